@@ -1,0 +1,48 @@
+# One static library per room of the house (docs/architecture.md), and the flags they share.
+find_package(Threads REQUIRED)
+find_package(fmt REQUIRED)
+find_package(Eigen3 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(pugixml REQUIRED)
+find_package(ZLIB REQUIRED)
+find_package(tomlplusplus REQUIRED)
+find_package(nlohmann_json REQUIRED)
+
+add_library(sinew_flags INTERFACE)
+# The same scene gives the same bits: no fused multiply-adds behind our back, no -march=native.
+target_compile_options(sinew_flags INTERFACE
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off
+  $<$<BOOL:${SINEW_WERROR}>:-Werror>)
+target_include_directories(sinew_flags INTERFACE ${CMAKE_SOURCE_DIR}/src)
+target_compile_definitions(sinew_flags INTERFACE EIGEN_MPL2_ONLY)
+if(SINEW_SANITIZE)
+  target_compile_options(sinew_flags INTERFACE
+    -fsanitize=${SINEW_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
+  target_link_options(sinew_flags INTERFACE -fsanitize=${SINEW_SANITIZE})
+endif()
+
+# sinew_room(NAME LEVEL [libraries...]): library sinew_NAME from src/sinew/NAME/*.cpp, linked to
+# every room of a lower level.
+set_property(GLOBAL PROPERTY SINEW_ROOMS "")
+function(sinew_room name level)
+  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/sinew/${name}/*.cpp)
+  get_property(rooms GLOBAL PROPERTY SINEW_ROOMS)
+  set(below "")
+  foreach(room IN LISTS rooms)
+    string(REPLACE ":" ";" pair ${room})
+    list(GET pair 0 other)
+    list(GET pair 1 other_level)
+    if(other_level LESS level)
+      list(APPEND below sinew_${other})
+    endif()
+  endforeach()
+  if(sources)
+    add_library(sinew_${name} STATIC ${sources})
+    target_link_libraries(sinew_${name} PUBLIC sinew_flags ${below} ${ARGN})
+    target_compile_definitions(sinew_${name} PRIVATE SINEW_VERSION="${PROJECT_VERSION}")
+  else()
+    add_library(sinew_${name} INTERFACE)
+    target_link_libraries(sinew_${name} INTERFACE sinew_flags ${below} ${ARGN})
+  endif()
+  set_property(GLOBAL APPEND PROPERTY SINEW_ROOMS ${name}:${level})
+endfunction()

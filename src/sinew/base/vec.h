@@ -1,0 +1,27 @@
+// Small vectors and the index types every room shares.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+
+namespace sinew {
+
+using Vec3 = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3d;
+
+using Index = std::int32_t;             // a node, tet, spring ... of a mesh or model
+using Edge = std::array<Index, 2>;      // two node ids, the smaller first
+using Triangle = std::array<Index, 3>;  // three node ids, counter-clockwise seen from outside
+using Tet = std::array<Index, 4>;       // four node ids, positive signed volume
+
+// Half-open range of indices [begin, end).
+struct Range {
+  Index begin = 0;
+  Index end = 0;
+  Index size() const { return end - begin; }
+  bool contains(Index i) const { return i >= begin && i < end; }
+};
+
+}  // namespace sinew
