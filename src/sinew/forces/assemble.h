@@ -1,0 +1,45 @@
+// Puts a Model together: bodies with their materials, pins, attachments, loads.
+//
+//   Model model;
+//   add_body(model, spec);          // once per body, before anything else
+//   model.pins.push_back(...);      // pins, loads, probes, ground, gravity: set directly
+//   add_attachment(model, ...);     // springs between bodies, or to an anchor
+//   finish(model);                  // checks, and builds what is derived
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sinew/mesh/tet_mesh.h"
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+struct BodySpec {
+  std::string name;
+  TetMesh mesh;                      // sound (mesh/doctor.h) and placed in the world, [m]
+  std::vector<Material> materials;   // (regions)
+  std::vector<std::string> regions;  // names (regions)
+  std::vector<int> tet_region;       // index into materials (tets); empty: all 0
+  Vec3 velocity = Vec3::Zero();      // [m/s] of every node at the start
+  Vec3 spin = Vec3::Zero();          // [rad/s] angular velocity about the centre of mass
+};
+
+// Appends the body's nodes, tets and springs. Masses from density: m_i = sum_t rho V_t / 4.
+// An edge shared by tets of several regions gets the sum of what each tet's law gives it.
+void add_body(Model& model, const BodySpec& spec);
+
+// Appends a massless node that belongs to no body and holds still, or follows `path`: what an
+// attachment to a point ends at. Call after the last add_body. Returns its node id.
+Index add_anchor(Model& model, const std::string& name, const Vec3& point, const Path& path = {});
+
+// Appends a spring with dashpot between two nodes (each of a body, or an anchor).
+// stiffness [N/m] > 0, damping [N s/m] >= 0, rest_length [m] >= 0.
+void add_attachment(Model& model, Index a, Index b, double stiffness, double damping,
+                    double rest_length);
+
+// Derives inverse masses (0 for pinned nodes and anchors), the node -> spring lists and the
+// colouring of the limited springs. Throws Error(input) where a node is held by two pins.
+void finish(Model& model);
+
+}  // namespace sinew

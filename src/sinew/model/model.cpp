@@ -1,0 +1,83 @@
+#include "sinew/model/model.h"
+
+#include <fmt/format.h>
+
+#include "sinew/base/hash.h"
+
+namespace sinew {
+namespace {
+
+void hash_vec(Hash& h, const Vec3& v) {
+  h.value(v.x());
+  h.value(v.y());
+  h.value(v.z());
+}
+
+}  // namespace
+
+std::uint64_t Model::hash() const {
+  Hash h;
+  h.array(rest_position);
+  h.array(mass);
+  h.array(inverse_mass);
+  h.array(drag);
+  h.array(start_velocity);
+  h.array(tets);
+  h.array(tet_region);
+  h.array(springs);
+  h.array(stiffness);
+  h.array(rest_length);
+  h.array(damping);
+  h.array(stretch_limit);
+  h.array(compress_limit);
+  h.array(limited);
+  h.array(colour_start);
+  h.value(limit_sweeps);
+  h.value(limit_tolerance);
+  hash_vec(h, gravity);
+  h.value(ground.has_value());
+  if (ground) {
+    hash_vec(h, ground->point);
+    hash_vec(h, ground->normal);
+    h.value(ground->restitution);
+    h.value(ground->friction);
+  }
+  for (const Body& b : bodies) {
+    h.text(b.name);
+    h.value(b.nodes.end);
+  }
+  for (const Pin& pin : pins) {
+    h.text(pin.name);
+    h.array(pin.nodes);
+    hash_vec(h, pin.path.pivot);
+    h.value(pin.path.smooth);
+    for (const KeyFrame& k : pin.path.keys) {
+      h.value(k.time);
+      hash_vec(h, k.move);
+      hash_vec(h, k.turn);
+    }
+  }
+  for (const Load& load : loads) {
+    h.array(load.nodes);
+    hash_vec(h, load.force);
+    h.value(load.start);
+    h.value(load.end);
+    h.value(load.ramp);
+  }
+  for (const Probe& probe : probes) {
+    h.text(probe.name);
+    h.array(probe.nodes);
+  }
+  return h.digest();
+}
+
+std::string Model::node_name(Index node) const {
+  for (const Body& b : bodies) {
+    if (b.nodes.contains(node)) {
+      return fmt::format("body {}, node {}", b.name, node - b.nodes.begin);
+    }
+  }
+  return fmt::format("anchor {}", node - body_node_count());
+}
+
+}  // namespace sinew

@@ -1,0 +1,110 @@
+// What is constant during a run: masses, springs, pins, loads. Structure of arrays, SI units.
+// A Model is put together by forces/assemble.h and then never changes.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sinew/base/vec.h"
+#include "sinew/model/material.h"
+#include "sinew/model/path.h"
+
+namespace sinew {
+
+// One mesh placed in the scene; its nodes, tets and springs are contiguous in the Model.
+struct Body {
+  std::string name;
+  Range nodes;
+  Range tets;
+  Range springs;
+  std::string laws;                  // the laws of its regions, "lloyd" or "lloyd+uniform"
+  double rest_volume = 0.0;          // [m3]
+  std::vector<std::string> regions;  // names, indexed by Model::tet_region
+};
+
+// Nodes whose motion is given. A pin without keys holds its nodes where they start.
+struct Pin {
+  std::string name;
+  std::vector<Index> nodes;
+  Path path;
+};
+
+// A force on a set of nodes while it lasts.
+struct Load {
+  std::string name;
+  std::vector<Index> nodes;
+  Vec3 force = Vec3::Zero();  // [N], the sum over the nodes; each gets the same share
+  double start = 0.0;         // [s]
+  double end = no_limit;      // [s]
+  double ramp = 0.0;          // [s] grows linearly from 0 over this time after start
+};
+
+// The half-space that bodies rest on.
+struct Ground {
+  Vec3 point = Vec3::Zero();    // [m]
+  Vec3 normal = Vec3::UnitY();  // [-] unit, points to the free side
+  double restitution = 0.0;     // [-] in [0, 1]
+  double friction = 0.5;        // [-] Coulomb's mu >= 0
+};
+
+// A named selection whose mean is reported each frame.
+struct Probe {
+  std::string name;
+  std::vector<Index> nodes;
+};
+
+struct Model {
+  // --- nodes: those of the bodies, body by body, then the anchors ---
+  std::vector<Vec3> rest_position;   // X [m] (nodes), where the body is placed
+  std::vector<double> mass;          // m [kg] (nodes), lumped: a quarter of each tet's; anchors 0
+  std::vector<double> inverse_mass;  // 1/m [1/kg] (nodes), 0 where the motion is given (pins)
+  std::vector<double> drag;          // [1/s] (nodes)
+  std::vector<Vec3> start_velocity;  // [m/s] (nodes)
+
+  // --- tets ---
+  std::vector<Tet> tets;            // node ids (tets)
+  std::vector<double> rest_volume;  // V [m3] (tets)
+  std::vector<int> tet_region;      // index into the body's regions (tets)
+
+  // --- springs: those of the bodies, body by body, then attachments ---
+  std::vector<Edge> springs;           // node ids (springs)
+  std::vector<double> stiffness;       // k [N/m] (springs)
+  std::vector<double> rest_length;     // l0 [m] (springs)
+  std::vector<double> damping;         // c [N s/m] (springs)
+  std::vector<double> stretch_limit;   // tau_s [-] (springs), infinity: none
+  std::vector<double> compress_limit;  // tau_c [-] (springs), infinity: none
+  Index first_attachment = 0;          // springs from here on tie bodies to points or bodies
+
+  // --- node -> its springs, for a gather in a fixed order ---
+  std::vector<Index> spring_start;  // offsets into node_spring (nodes + 1)
+  std::vector<Index> node_spring;   // 2 s: the node is end 0 of spring s; 2 s + 1: end 1
+
+  // --- limited springs grouped so that no two of a colour share a node ---
+  std::vector<Index> limited;       // spring ids, colour by colour
+  std::vector<Index> colour_start;  // offsets into limited (colours + 1)
+  int limit_sweeps = 0;             // most sweeps over the limited springs after a step
+  double limit_tolerance = 1e-3;    // violation, as a share of l0, that is good enough
+
+  Vec3 gravity = Vec3(0.0, -9.81, 0.0);  // [m/s2]
+  std::optional<Ground> ground;
+  std::vector<Body> bodies;
+  std::vector<Pin> pins;
+  std::vector<Load> loads;
+  std::vector<Probe> probes;
+
+  Index node_count() const { return static_cast<Index>(rest_position.size()); }
+  Index tet_count() const { return static_cast<Index>(tets.size()); }
+  Index spring_count() const { return static_cast<Index>(springs.size()); }
+  // Nodes that belong to bodies; the anchors of attachments come after them.
+  Index body_node_count() const { return bodies.empty() ? 0 : bodies.back().nodes.end; }
+
+  // Names everything that decides a run's result; equal models have equal hashes.
+  std::uint64_t hash() const;
+
+  // "body liver, node 17 (of the body)", "anchor 3": how messages name a node.
+  std::string node_name(Index node) const;
+};
+
+}  // namespace sinew

@@ -1,0 +1,31 @@
+#include "sinew/model/path.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace sinew {
+
+Vec3 Path::at(double t, const Vec3& X) const {
+  if (keys.empty()) return X;
+  const auto after = std::upper_bound(keys.begin(), keys.end(), t,
+                                      [](double time, const KeyFrame& k) { return time < k.time; });
+  KeyFrame now;
+  if (after == keys.end()) {
+    now = keys.back();
+  } else {
+    const KeyFrame from = after == keys.begin() ? KeyFrame{} : *(after - 1);
+    const double span = after->time - from.time;
+    double s = span > 0.0 ? std::clamp((t - from.time) / span, 0.0, 1.0) : 1.0;
+    if (smooth) s = s * s * (3.0 - 2.0 * s);
+    now.move = (1.0 - s) * from.move + s * after->move;
+    now.turn = (1.0 - s) * from.turn + s * after->turn;
+  }
+  const double angle = now.turn.norm();
+  Vec3 turned = X;
+  if (angle > 0.0) {
+    turned = pivot + Eigen::AngleAxisd(angle, Vec3(now.turn / angle)) * Vec3(X - pivot);
+  }
+  return turned + now.move;
+}
+
+}  // namespace sinew

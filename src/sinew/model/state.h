@@ -1,0 +1,34 @@
+// What changes during a run. With the Model's hash it is all that a checkpoint holds.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sinew/base/vec.h"
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+// Work and losses summed since the start [J].
+struct EnergyAccount {
+  double dissipated = 0.0;  // by dashpots, drag, limits, impact and friction
+  double work_in = 0.0;     // by moving pins and loads
+};
+
+struct State {
+  std::vector<Vec3> position;  // x(t) [m] (nodes)
+  std::vector<Vec3>
+      half_velocity;       // w = (x(t) - x(t - h)) / h [m/s] (nodes): Verlet's own velocity
+  double last_step = 0.0;  // the h that half_velocity belongs to [s]; 0 before step one
+  double time = 0.0;       // [s]
+  std::int64_t step = 0;   // steps taken
+  EnergyAccount energy;
+
+  // Positions, velocities, time and step: equal runs have equal hashes at any thread count.
+  std::uint64_t hash() const;
+};
+
+// Every node at rest position with its start velocity, pins where their paths begin.
+State initial_state(const Model& model);
+
+}  // namespace sinew

@@ -1,0 +1,155 @@
+// A scene as its file says it: validated values in SI units, nothing built yet.
+// Every member is documented with unit, default and range in docs/scene-format.md.
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sinew/base/error.h"
+#include "sinew/base/vec.h"
+#include "sinew/model/material.h"
+#include "sinew/model/path.h"
+
+namespace sinew {
+
+// Nodes of a body: those that meet every condition given. Places are in the world, as the body is
+// placed at the start, in metres.
+struct Selection {
+  struct Box {
+    Vec3 min, max;
+  };
+  struct Sphere {
+    Vec3 center;
+    double radius = 0.0;
+  };
+  struct HalfSpace {
+    Vec3 point, normal;
+  };  // the side that the normal points to
+  struct Side {
+    int axis = 0;
+    bool upper = false;
+    double depth = 0.0;
+  };  // within depth of the body's bounding box side
+
+  bool all = false;
+  std::optional<int> label;       // nodes of the tets with this label
+  std::optional<int> face_label;  // nodes of the file's faces with this label
+  std::optional<int> node_label;  // nodes with this label
+  std::optional<Box> box;
+  std::optional<Sphere> sphere;
+  std::optional<HalfSpace> half_space;
+  std::optional<Side> side;
+  std::vector<Index> nodes;     // ids in the mesh file, from 0
+  std::optional<Vec3> nearest;  // the one node nearest to this point
+  bool surface = false;         // only nodes on the surface
+  Location where;               // for messages
+};
+
+struct SceneRegion {
+  std::string name;
+  std::vector<int> labels;  // mesh labels it covers
+  Material material;        // the body's, with what the region overrides
+};
+
+struct SceneBody {
+  std::string name;
+  // Where the mesh comes from: a file or a shape.
+  std::string mesh;                       // path, relative to the scene file; empty: a shape
+  std::string shape;                      // beam, box, sphere, ellipsoid, cylinder
+  std::array<int, 3> cells = {4, 4, 16};  // beam, box
+  Vec3 size = Vec3(0.1, 0.1, 0.4);        // beam, box [m]
+  Vec3 radii = Vec3(0.1, 0.1, 0.1);       // sphere (all equal), ellipsoid [m]
+  double radius = 0.05, length = 0.2;     // cylinder [m]
+  int resolution = 8;                     // sphere, ellipsoid, cylinder: cells across
+  // Placement: x = position + R(rotation) (scale (X - origin))
+  double scale = 1.0;   // metres per mesh unit
+  bool center = false;  // origin: the mesh's centroid (by volume)
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Vec3 position = Vec3::Zero();  // [m]
+  Vec3 velocity = Vec3::Zero();  // [m/s]
+  Vec3 spin = Vec3::Zero();      // [rad/s]
+  Material material;             // of tets that no region covers
+  std::vector<SceneRegion> regions;
+  Location where;
+};
+
+struct ScenePin {
+  std::string name, body;
+  Selection select;
+  Path path;
+  bool pivot_given = false;  // else the mean of the pinned nodes
+  Location where;
+};
+
+// Springs from nodes of a body to a point, or each to its nearest node of another body's selection.
+struct SceneAttachment {
+  std::string name, body;
+  Selection select;
+  std::optional<Vec3> point;  // [m]
+  Path path;                  // of the point
+  std::string to_body;
+  std::optional<Selection> to_select;
+  double stiffness = 100.0;           // [N/m] of each spring
+  double damping = 0.0;               // [N s/m] of each spring
+  std::optional<double> rest_length;  // [m]; absent: the distance at the start
+  Location where;
+};
+
+struct SceneForce {
+  std::string name, body;
+  Selection select;
+  Vec3 force = Vec3::Zero();                       // [N] in total, shared equally
+  double start = 0.0, end = no_limit, ramp = 0.0;  // [s]
+  Location where;
+};
+
+struct SceneProbe {
+  std::string name, body;
+  Selection select;
+  Location where;
+};
+
+struct SceneGround {
+  Vec3 point = Vec3::Zero();
+  Vec3 normal = Vec3::UnitY();
+  double restitution = 0.0;
+  double friction = 0.5;
+};
+
+struct SceneOutput {
+  double fps = 30.0;              // frames per simulated second
+  bool vtu = true;                // write the VTU series
+  std::string encoding = "zlib";  // zlib, base64, ascii
+  double checkpoint = 5.0;        // [s] of wall time between checkpoints; 0: every frame
+};
+
+struct Scene {
+  std::string name;       // default: the file's stem
+  std::string title;      // one line
+  std::string look_for;   // a sentence on what to look for
+  double duration = 2.0;  // [s]
+  std::string stepper = "verlet";
+  std::optional<double> dt;  // [s]; absent: "auto"
+  int substeps = 1;          // the step taken is dt / substeps
+  double safety = 0.9;       // share of the stable step that dt = "auto" takes
+  bool allow_unstable = false;
+  Vec3 gravity = Vec3(0.0, -9.81, 0.0);
+  int limit_sweeps = 20;
+  double limit_tolerance = 1e-3;
+  std::optional<SceneGround> ground;
+  SceneOutput output;
+  std::vector<SceneBody> bodies;  // in the file's order
+  std::vector<ScenePin> pins;
+  std::vector<SceneAttachment> attachments;
+  std::vector<SceneForce> forces;
+  std::vector<SceneProbe> probes;
+
+  std::string file;      // the file it came from, for messages
+  std::string document;  // the whole scene as TOML with every override in it; parses to this scene
+  std::string base;      // folder that relative mesh paths start from, absolute
+};
+
+}  // namespace sinew
