@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 
 namespace sinew {
@@ -15,6 +16,9 @@ using Index = std::int32_t;             // a node, tet, spring ... of a mesh or 
 using Edge = std::array<Index, 2>;      // two node ids, the smaller first
 using Triangle = std::array<Index, 3>;  // three node ids, counter-clockwise seen from outside
 using Tet = std::array<Index, 4>;       // four node ids, positive signed volume
+
+// An index as a subscript: v[uz(i)] says that i is known not to be negative.
+constexpr std::size_t uz(Index i) { return static_cast<std::size_t>(i); }
 
 // Half-open range of indices [begin, end).
 struct Range {

@@ -9,12 +9,12 @@
 namespace sinew {
 
 struct TetMesh {
-  std::vector<Vec3> nodes;         // position, in the file's unit until scaled to [m] (nodes)
-  std::vector<Tet> tets;           // node ids (tets)
-  std::vector<int> tet_label;      // region label (tets); empty: all 0
-  std::vector<int> node_label;     // label (nodes); empty: none
-  std::vector<Triangle> faces;     // labelled faces, as the file gives them (faces); may be empty
-  std::vector<int> face_label;     // label (faces)
+  std::vector<Vec3> nodes;      // position, in the file's unit until scaled to [m] (nodes)
+  std::vector<Tet> tets;        // node ids (tets)
+  std::vector<int> tet_label;   // region label (tets); empty: all 0
+  std::vector<int> node_label;  // label (nodes); empty: none
+  std::vector<Triangle> faces;  // labelled faces, as the file gives them (faces); may be empty
+  std::vector<int> face_label;  // label (faces)
 
   Index node_count() const { return static_cast<Index>(nodes.size()); }
   Index tet_count() const { return static_cast<Index>(tets.size()); }
