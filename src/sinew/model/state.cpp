@@ -22,7 +22,7 @@ State initial_state(const Model& model) {
   s.half_velocity = model.start_velocity;
   for (const Pin& pin : model.pins) {
     for (const Index node : pin.nodes) {
-      const auto n = static_cast<std::size_t>(node);
+      const auto n = uz(node);
       s.position[n] = pin.path.at(0.0, model.rest_position[n]);
       s.half_velocity[n] = Vec3::Zero();
     }

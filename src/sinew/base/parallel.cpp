@@ -1,0 +1,18 @@
+#include "sinew/base/parallel.h"
+
+#include <tbb/global_control.h>
+
+namespace sinew {
+
+ThreadLimit::ThreadLimit(int threads) {
+  if (threads > 0) {
+    control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism,
+                                       static_cast<std::size_t>(threads));
+  }
+}
+
+ThreadLimit::~ThreadLimit() {
+  delete static_cast<tbb::global_control*>(control_);
+}
+
+}  // namespace sinew

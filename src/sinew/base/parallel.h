@@ -1,0 +1,79 @@
+// Loops over many items on many threads, with results that do not depend on the thread count: the
+// items are cut into blocks of a fixed size, and sums are added up block by block in order.
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "sinew/base/vec.h"
+
+namespace sinew {
+
+// Items a block holds. Large enough to hide the cost of handing a block to a thread (about 1 us).
+inline constexpr Index block_size = 1024;
+
+inline Index block_count(Index n) {
+  return (n + block_size - 1) / block_size;
+}
+
+inline Range block(Index b, Index n) {
+  return {b * block_size, std::min(n, (b + 1) * block_size)};
+}
+
+// Calls f(block index, range) for every block of [0, n).
+template <typename F>
+void parallel_blocks(Index n, const F& f) {
+  const Index blocks = block_count(n);
+  if (blocks <= 2) {
+    for (Index b = 0; b < blocks; ++b) f(b, block(b, n));
+    return;
+  }
+  tbb::parallel_for(Index{0}, blocks, [&](Index b) { f(b, block(b, n)); });
+}
+
+// Calls f(i) for every i in [0, n).
+template <typename F>
+void parallel_for(Index n, const F& f) {
+  parallel_blocks(n, [&](Index, Range r) {
+    for (Index i = r.begin; i < r.end; ++i) f(i);
+  });
+}
+
+// Combines f(range) of every block in the blocks' order, from `init` on.
+template <typename T, typename F, typename Combine>
+T parallel_reduce(Index n, T init, const F& f, const Combine& combine) {
+  std::vector<T> parts(static_cast<std::size_t>(block_count(n)), init);
+  parallel_blocks(n, [&](Index b, Range r) { parts[static_cast<std::size_t>(b)] = f(r); });
+  for (const T& part : parts) init = combine(init, part);
+  return init;
+}
+
+// Sum of f(i) over [0, n), in a fixed order.
+template <typename F>
+double parallel_sum(Index n, const F& f) {
+  return parallel_reduce(
+      n, 0.0,
+      [&](Range r) {
+        double sum = 0.0;
+        for (Index i = r.begin; i < r.end; ++i) sum += f(i);
+        return sum;
+      },
+      [](double a, double b) { return a + b; });
+}
+
+// While it lives, at most `threads` threads run the loops above (0: as many as the machine has).
+class ThreadLimit {
+ public:
+  explicit ThreadLimit(int threads);
+  ~ThreadLimit();
+  ThreadLimit(const ThreadLimit&) = delete;
+  ThreadLimit& operator=(const ThreadLimit&) = delete;
+
+ private:
+  void* control_ = nullptr;
+};
+
+}  // namespace sinew

@@ -1,0 +1,258 @@
+#include "sinew/forces/assemble.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "sinew/base/error.h"
+#include "sinew/forces/laws.h"
+#include "sinew/mesh/coloring.h"
+#include "sinew/mesh/edges.h"
+
+namespace sinew {
+namespace {
+
+// What one tet of `material` adds to the stiffness of its edge. `sharing` tets hold the edge.
+double tet_stiffness(const Material& material, double volume, double length, double sharing) {
+  switch (material.law) {
+    case Law::uniform:
+      return material.spring_stiffness / sharing;
+    case Law::lloyd:
+      return lloyd_stiffness(material.length == LloydLength::tet ? regular_edge(volume) : length,
+                             material.young);
+    case Law::vangelder:
+      return vangelder_stiffness(volume, length, material.young);
+  }
+  throw Error(ErrorKind::internal, "unknown law");
+}
+
+// The dashpot that `material` gives to a spring of this total stiffness.
+double law_damping(const Material& material, double stiffness, double mass_i, double mass_j,
+                   double length) {
+  if (material.law == Law::uniform) return material.spring_damping;
+  return material.damping == Damping::published
+             ? published_damping(stiffness, mass_i, mass_j, length)
+             : ratio_damping(material.damping_ratio, stiffness, mass_i, mass_j);
+}
+
+void add_masses(Model& model, const Body& body, const BodySpec& spec) {
+  std::vector<double> drag_mass(spec.mesh.nodes.size(), 0.0);
+  const auto first = uz(body.nodes.begin);
+  for (std::size_t t = 0; t < spec.mesh.tets.size(); ++t) {
+    const double volume = signed_volume(spec.mesh.nodes, spec.mesh.tets[t]);
+    const Material& material =
+        spec.materials[static_cast<std::size_t>(model.tet_region[model.tets.size() + t])];
+    for (const Index corner : spec.mesh.tets[t]) {
+      const auto c = uz(corner);
+      model.mass[first + c] += material.density * volume / 4.0;
+      drag_mass[c] += material.drag * material.density * volume / 4.0;
+    }
+  }
+  for (std::size_t i = 0; i < drag_mass.size(); ++i) {
+    model.drag[first + i] = drag_mass[i] / model.mass[first + i];
+  }
+}
+
+void add_springs(Model& model, const Body& body, const BodySpec& spec) {
+  const EdgeTable table = build_edges(spec.mesh.tets, spec.mesh.node_count());
+  const auto first = uz(body.nodes.begin);
+  const auto first_tet = uz(body.tets.begin);
+  for (std::size_t e = 0; e < table.edges.size(); ++e) {
+    const auto i = static_cast<std::size_t>(table.edges[e][0]);
+    const auto j = static_cast<std::size_t>(table.edges[e][1]);
+    const double length = (spec.mesh.nodes[j] - spec.mesh.nodes[i]).norm();
+    const std::span<const Index> around = table.tets_of(static_cast<Index>(e));
+    const auto sharing = static_cast<double>(around.size());
+    double k = 0.0;
+    double stretch_limit = no_limit;
+    double compress_limit = no_limit;
+    for (const Index t : around) {
+      const auto tet = first_tet + uz(t);
+      const Material& m = spec.materials[static_cast<std::size_t>(model.tet_region[tet])];
+      k += tet_stiffness(m, model.rest_volume[tet], length, sharing);
+      stretch_limit = std::min(stretch_limit, m.stretch_limit);
+      compress_limit = std::min(compress_limit, m.compress_limit);
+    }
+    double c = 0.0;
+    for (const Index t : around) {
+      const auto tet = first_tet + uz(t);
+      const Material& m = spec.materials[static_cast<std::size_t>(model.tet_region[tet])];
+      c += law_damping(m, k, model.mass[first + i], model.mass[first + j], length) / sharing;
+    }
+    model.springs.push_back(
+        {body.nodes.begin + table.edges[e][0], body.nodes.begin + table.edges[e][1]});
+    model.stiffness.push_back(k);
+    model.rest_length.push_back(length);
+    model.damping.push_back(c);
+    model.stretch_limit.push_back(stretch_limit);
+    model.compress_limit.push_back(compress_limit);
+  }
+}
+
+const char* law_name(Law law) {
+  switch (law) {
+    case Law::uniform:
+      return "uniform";
+    case Law::lloyd:
+      return "lloyd";
+    case Law::vangelder:
+      return "vangelder";
+  }
+  return "?";
+}
+
+std::string law_names(const std::vector<Material>& materials) {
+  std::vector<std::string> names;
+  for (const Material& m : materials) {
+    const std::string name = law_name(m.law);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, "+"));
+}
+
+}  // namespace
+
+void add_body(Model& model, const BodySpec& spec) {
+  if (model.first_attachment != model.spring_count() ||
+      model.body_node_count() != model.node_count()) {
+    throw Error(ErrorKind::usage, "add_body after an anchor or an attachment",
+                "add every body first");
+  }
+  Body body;
+  body.name = spec.name;
+  body.regions = spec.regions;
+  body.laws = law_names(spec.materials);
+  body.nodes = {model.node_count(), model.node_count() + spec.mesh.node_count()};
+  body.tets = {model.tet_count(), model.tet_count() + spec.mesh.tet_count()};
+
+  Vec3 mass_moment = Vec3::Zero();
+  const auto nodes = uz(body.nodes.end);
+  model.rest_position.insert(model.rest_position.end(), spec.mesh.nodes.begin(),
+                             spec.mesh.nodes.end());
+  model.mass.resize(nodes, 0.0);
+  model.drag.resize(nodes, 0.0);
+  model.start_velocity.resize(nodes, Vec3::Zero());
+  model.tet_region.insert(model.tet_region.end(), spec.tet_region.begin(), spec.tet_region.end());
+  model.tet_region.resize(uz(body.tets.end), 0);
+  add_masses(model, body, spec);
+
+  for (const Tet& t : spec.mesh.tets) {
+    const double volume = signed_volume(spec.mesh.nodes, t);
+    model.rest_volume.push_back(volume);
+    body.rest_volume += volume;
+    Tet shifted = t;
+    for (Index& corner : shifted) corner += body.nodes.begin;
+    model.tets.push_back(shifted);
+  }
+
+  body.springs.begin = model.spring_count();
+  add_springs(model, body, spec);
+  body.springs.end = model.spring_count();
+  model.first_attachment = model.spring_count();
+
+  double mass = 0.0;
+  for (Index i = body.nodes.begin; i < body.nodes.end; ++i) {
+    const auto k = uz(i);
+    mass += model.mass[k];
+    mass_moment += model.mass[k] * model.rest_position[k];
+  }
+  const Vec3 center = mass_moment / mass;
+  for (Index i = body.nodes.begin; i < body.nodes.end; ++i) {
+    const auto k = uz(i);
+    model.start_velocity[k] = spec.velocity + spec.spin.cross(model.rest_position[k] - center);
+  }
+  model.bodies.push_back(std::move(body));
+}
+
+Index add_anchor(Model& model, const std::string& name, const Vec3& point, const Path& path) {
+  const Index node = model.node_count();
+  model.rest_position.push_back(point);
+  model.mass.push_back(0.0);
+  model.drag.push_back(0.0);
+  model.start_velocity.push_back(Vec3::Zero());
+  model.pins.push_back({name, {node}, path});
+  return node;
+}
+
+void add_attachment(Model& model, Index a, Index b, double stiffness, double damping,
+                    double rest_length) {
+  model.springs.push_back({a, b});
+  model.stiffness.push_back(stiffness);
+  model.rest_length.push_back(rest_length);
+  model.damping.push_back(damping);
+  model.stretch_limit.push_back(no_limit);
+  model.compress_limit.push_back(no_limit);
+}
+
+namespace {
+
+void mark_pinned(Model& model) {
+  model.inverse_mass.resize(model.mass.size());
+  for (std::size_t i = 0; i < model.mass.size(); ++i) {
+    model.inverse_mass[i] = model.mass[i] > 0.0 ? 1.0 / model.mass[i] : 0.0;
+  }
+  std::vector<int> holder(model.mass.size(), -1);
+  for (std::size_t p = 0; p < model.pins.size(); ++p) {
+    for (const Index node : model.pins[p].nodes) {
+      const auto n = uz(node);
+      if (holder[n] >= 0) {
+        const std::string& other = model.pins[static_cast<std::size_t>(holder[n])].name;
+        throw Error(ErrorKind::input,
+                    fmt::format("{} is held by two pins, '{}' and '{}'", model.node_name(node),
+                                other, model.pins[p].name),
+                    "make their selections disjoint");
+      }
+      holder[n] = static_cast<int>(p);
+      model.inverse_mass[n] = 0.0;
+    }
+  }
+}
+
+void list_springs_of_nodes(Model& model) {
+  model.spring_start.assign(model.rest_position.size() + 1, 0);
+  for (const Edge& s : model.springs) {
+    for (const Index node : s) ++model.spring_start[uz(node) + 1];
+  }
+  for (std::size_t i = 1; i < model.spring_start.size(); ++i) {
+    model.spring_start[i] += model.spring_start[i - 1];
+  }
+  std::vector<Index> next(model.spring_start.begin(), model.spring_start.end() - 1);
+  model.node_spring.resize(2 * model.springs.size());
+  for (Index s = 0; s < model.spring_count(); ++s) {
+    for (Index end = 0; end < 2; ++end) {
+      const auto node = static_cast<std::size_t>(model.springs[uz(s)][uz(end)]);
+      model.node_spring[static_cast<std::size_t>(next[node]++)] = 2 * s + end;
+    }
+  }
+}
+
+void colour_limited_springs(Model& model) {
+  std::vector<Index> limited;
+  std::vector<Edge> pairs;
+  for (Index i = 0; i < model.spring_count(); ++i) {
+    const auto s = uz(i);
+    const auto n0 = static_cast<std::size_t>(model.springs[s][0]);
+    const auto n1 = static_cast<std::size_t>(model.springs[s][1]);
+    const bool can_move = model.inverse_mass[n0] + model.inverse_mass[n1] > 0.0;
+    if (can_move && std::min(model.stretch_limit[s], model.compress_limit[s]) < no_limit) {
+      limited.push_back(i);
+      pairs.push_back(model.springs[s]);
+    }
+  }
+  const Coloring coloring = color_pairs(pairs, model.node_count());
+  model.limited.clear();
+  for (const Index p : coloring.order) model.limited.push_back(limited[uz(p)]);
+  model.colour_start = coloring.start;
+}
+
+}  // namespace
+
+void finish(Model& model) {
+  mark_pinned(model);
+  list_springs_of_nodes(model);
+  colour_limited_springs(model);
+}
+
+}  // namespace sinew

@@ -1,0 +1,49 @@
+// All springs of a model: forces, energy, stretch, and the products the stable step needs.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/state.h"
+
+namespace sinew {
+
+// Fills workspace.spring_force from positions and half-step velocities.
+// Returns the power [W] that the dashpots turn into heat.
+double compute_spring_forces(const Model& model, const State& state, Workspace& workspace);
+
+// Sum over springs of k/2 (|x_ij| - l0)^2 [J].
+double elastic_energy(const Model& model, std::span<const Vec3> x);
+
+// |x_ij| / l0 - 1 over the bodies' springs [-]: the largest, and the smallest as a positive share.
+struct StretchRange {
+  double stretch = 0.0;   // longest: 0.25 means 25 % longer than at rest
+  double compress = 0.0;  // shortest: 0.25 means 25 % shorter than at rest
+  Index longest = -1;     // spring ids, -1 where there is none
+  Index shortest = -1;
+};
+StretchRange measure_stretch(const Model& model, std::span<const Vec3> x);
+
+// out = (a K + b C) u at positions x: K the springs' stiffness (compressed springs without their
+// negative transverse part), C the dashpots and the drag. Pinned nodes have u = 0 and get 0.
+void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double a, double b,
+                             std::span<const Vec3> u, Workspace& workspace, std::span<Vec3> out);
+
+// Sum, for every node in the fixed order of its springs, of what workspace.spring_force holds.
+inline Vec3 gather_springs(const Model& model, const Workspace& workspace, Index node) {
+  Vec3 sum = Vec3::Zero();
+  const auto n = uz(node);
+  for (Index k = model.spring_start[n]; k < model.spring_start[n + 1]; ++k) {
+    const Index s = model.node_spring[uz(k)];
+    const Vec3& f = workspace.spring_force[static_cast<std::size_t>(s >> 1)];
+    if (s & 1) {
+      sum -= f;
+    } else {
+      sum += f;
+    }
+  }
+  return sum;
+}
+
+}  // namespace sinew

@@ -1,0 +1,84 @@
+#include "sinew/forces/terms.h"
+
+#include <algorithm>
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/springs.h"
+#include "sinew/mesh/tet_mesh.h"
+
+namespace sinew {
+
+double load_share(const Load& load, double t) {
+  if (t < load.start || t > load.end) return 0.0;
+  return load.ramp > 0.0 ? std::min(1.0, (t - load.start) / load.ramp) : 1.0;
+}
+
+double compute_forces(const Model& model, const State& state, Workspace& workspace) {
+  double power = compute_spring_forces(model, state, workspace);
+  const Index n = model.node_count();
+  workspace.partial.assign(static_cast<std::size_t>(block_count(n)), 0.0);
+  parallel_blocks(n, [&](Index b, Range r) {
+    double drag_power = 0.0;
+    for (Index i = r.begin; i < r.end; ++i) {
+      const auto k = uz(i);
+      Vec3 f = gather_springs(model, workspace, i);
+      if (model.inverse_mass[k] > 0.0) {
+        const Vec3& w = state.half_velocity[k];
+        f += model.mass[k] * (model.gravity - model.drag[k] * w);
+        drag_power += model.mass[k] * model.drag[k] * w.squaredNorm();
+      }
+      workspace.force[k] = f;
+    }
+    workspace.partial[uz(b)] = drag_power;
+  });
+  for (const double p : workspace.partial) power += p;
+
+  for (const Load& load : model.loads) {
+    const double share = load_share(load, state.time);
+    if (share == 0.0) continue;
+    const Vec3 each = load.force * (share / static_cast<double>(load.nodes.size()));
+    for (const Index i : load.nodes) {
+      const auto k = uz(i);
+      if (model.inverse_mass[k] > 0.0) workspace.force[k] += each;
+    }
+  }
+  return power;
+}
+
+std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
+                                       const Workspace& workspace) {
+  std::vector<Vec3> v(state.half_velocity);
+  parallel_for(model.node_count(), [&](Index i) {
+    const auto k = uz(i);
+    v[k] += (0.5 * state.last_step * model.inverse_mass[k]) * workspace.force[k];
+  });
+  return v;
+}
+
+Energies measure_energies(const Model& model, const State& state, Workspace& workspace) {
+  compute_forces(model, state, workspace);
+  const std::vector<Vec3> v = synchronous_velocity(model, state, workspace);
+  Energies e;
+  e.kinetic = parallel_sum(model.node_count(), [&](Index i) {
+    const auto k = uz(i);
+    return model.inverse_mass[k] > 0.0 ? 0.5 * model.mass[k] * v[k].squaredNorm() : 0.0;
+  });
+  e.gravity = parallel_sum(model.node_count(), [&](Index i) {
+    const auto k = uz(i);
+    if (model.inverse_mass[k] == 0.0) return 0.0;
+    return -model.mass[k] * model.gravity.dot(state.position[k] - model.rest_position[k]);
+  });
+  e.elastic = elastic_energy(model, state.position);
+  e.dissipated = state.energy.dissipated;
+  e.work_in = state.energy.work_in;
+  return e;
+}
+
+double volume_ratio(const Model& model, const Body& body, const std::vector<Vec3>& x) {
+  const double volume = parallel_sum(body.tets.size(), [&](Index i) {
+    return signed_volume(x, model.tets[static_cast<std::size_t>(body.tets.begin + i)]);
+  });
+  return volume / body.rest_volume;
+}
+
+}  // namespace sinew

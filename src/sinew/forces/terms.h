@@ -1,0 +1,41 @@
+// The list of terms: everything that pulls on a node, and every energy, in one place. A new force
+// is added here (docs/adding-a-force.md).
+#pragma once
+
+#include <vector>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/state.h"
+
+namespace sinew {
+
+// Fills workspace.force with the total force on every node [N]: springs, dashpots, gravity, drag,
+// loads at state.time. Pinned nodes and anchors get only what the springs pull on them.
+// Returns the power [W] that dashpots and drag turn into heat.
+double compute_forces(const Model& model, const State& state, Workspace& workspace);
+
+// Share of a load that acts at time t: 0 outside [start, end], growing linearly over the ramp.
+double load_share(const Load& load, double t);
+
+// The talk's velocity, v(t) = (x(t+h) - x(t-h)) / 2h = w + a h / 2, with w the half-step velocity
+// before t and h the last step; where the motion is given (pins) the half-step velocity itself.
+// Expects compute_forces to have filled workspace.force.
+std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
+                                       const Workspace& workspace);
+
+struct Energies {
+  double kinetic = 0.0;     // [J] of the nodes that are free to move, with the talk's velocity
+  double elastic = 0.0;     // [J] in the springs
+  double gravity = 0.0;     // [J] of the free nodes, 0 at their rest positions
+  double dissipated = 0.0;  // [J] since the start
+  double work_in = 0.0;     // [J] since the start
+  // What the account leaves unexplained: kinetic + elastic + gravity + dissipated - work_in is
+  // constant up to the step's error.
+  double total() const { return kinetic + elastic + gravity + dissipated - work_in; }
+};
+Energies measure_energies(const Model& model, const State& state, Workspace& workspace);
+
+// Current volume of the body's tets over their rest volume [-].
+double volume_ratio(const Model& model, const Body& body, const std::vector<Vec3>& x);
+
+}  // namespace sinew
