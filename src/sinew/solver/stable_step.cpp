@@ -1,0 +1,188 @@
+#include "sinew/solver/stable_step.h"
+
+#include <fmt/format.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/springs.h"
+
+namespace sinew {
+namespace {
+
+using Field = std::vector<Vec3>;  // one vector per node, zero where the motion is given
+
+double dot(const Field& a, const Field& b) {
+  return parallel_sum(static_cast<Index>(a.size()),
+                      [&](Index i) { return a[uz(i)].dot(b[uz(i)]); });
+}
+
+void scale_nodes(const Model& model, Field& u) {  // u = M^-1/2 u
+  parallel_for(model.node_count(),
+               [&](Index i) { u[uz(i)] *= std::sqrt(model.inverse_mass[uz(i)]); });
+}
+
+// y = M^-1/2 (a K + b C) M^-1/2 u
+void apply(const Model& model, const Field& x, double a, double b, const Field& u, Field& scratch,
+           Workspace& workspace, Field& y) {
+  scratch = u;
+  scale_nodes(model, scratch);
+  stiffness_damping_times(model, x, a, b, scratch, workspace, y);
+  scale_nodes(model, y);
+}
+
+// Numbers in [-1, 1] that look random and are the same everywhere: a start that no symmetry of the
+// mesh makes orthogonal to the mode looked for.
+Field scattered(const Model& model) {
+  Field u(model.rest_position.size(), Vec3::Zero());
+  std::uint64_t seed = 1;
+  for (Index i = 0; i < model.node_count(); ++i) {
+    for (int c = 0; c < 3; ++c) {
+      seed = seed * 6364136223846793005ULL + 1442695040888963407ULL;
+      const auto top = static_cast<double>(seed >> 11) * 0x1.0p-52 - 1.0;
+      if (model.inverse_mass[uz(i)] > 0.0) u[uz(i)][c] = top;
+    }
+  }
+  return u;
+}
+
+struct Top {
+  double value = 0.0;     // largest Ritz value
+  double residual = 0.0;  // an eigenvalue lies within this of it
+  Field vector;           // unit Ritz vector
+  int steps = 0;
+};
+
+// Largest eigenvalue of the symmetric operator by Lanczos without reorthogonalisation, which
+// spoils only copies of eigenvalues already found. Stops at a relative residual of 1e-3.
+template <typename Operator>
+Top lanczos(const Operator& op, Field q, int most) {
+  const double norm = std::sqrt(dot(q, q));
+  Top top;
+  if (norm == 0.0) return top;
+  const auto n = static_cast<Index>(q.size());
+  parallel_for(n, [&](Index i) { q[uz(i)] /= norm; });
+
+  std::vector<Field> basis;
+  std::vector<double> alpha, beta;
+  Field y(q.size());
+  while (top.steps < most) {
+    basis.push_back(q);
+    op(q, y);
+    const double a = dot(q, y);
+    alpha.push_back(a);
+    parallel_for(n, [&](Index i) {
+      y[uz(i)] -= a * q[uz(i)];
+      if (basis.size() > 1) y[uz(i)] -= beta.back() * basis[basis.size() - 2][uz(i)];
+    });
+    const double b = std::sqrt(dot(y, y));
+    ++top.steps;
+
+    const auto m = static_cast<Eigen::Index>(alpha.size());
+    Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> small;
+    small.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(alpha.data(), m),
+                                 Eigen::Map<const Eigen::VectorXd>(beta.data(), m - 1));
+    const Eigen::VectorXd s = small.eigenvectors().col(m - 1);
+    top.value = small.eigenvalues()(m - 1);
+    top.residual = b * std::abs(s(m - 1));
+    if (top.residual <= 1e-3 * top.value || top.steps == most || b <= 1e-14 * top.value) {
+      top.vector.assign(q.size(), Vec3::Zero());
+      parallel_for(n, [&](Index i) {
+        for (Eigen::Index k = 0; k < m; ++k)
+          top.vector[uz(i)] += s(k) * basis[static_cast<std::size_t>(k)][uz(i)];
+      });
+      break;
+    }
+    beta.push_back(b);
+    parallel_for(n, [&](Index i) { q[uz(i)] = y[uz(i)] / b; });
+  }
+  return top;
+}
+
+// The h > 0 with a h^2 + 2 b h = 4.
+double positive_root(double a, double b) {
+  return 4.0 / (b + std::sqrt(b * b + 4.0 * a));
+}
+
+// A step that is stable whatever the mesh: per node, the rows of K and C summed (Gershgorin).
+double guaranteed_step(const Model& model, Index& stiffest) {
+  double h = std::numeric_limits<double>::infinity();
+  double highest = 0.0;
+  for (Index i = 0; i < model.node_count(); ++i) {
+    const auto n = uz(i);
+    double k = 0.0;
+    double c = model.drag[n] * model.mass[n];
+    for (Index e = model.spring_start[n]; e < model.spring_start[n + 1]; ++e) {
+      const Index spring = model.node_spring[uz(e)] >> 1;
+      const auto s = uz(spring);
+      k += 2.0 * model.stiffness[s];
+      c += 2.0 * model.damping[s];
+      const double w =
+          model.inverse_mass[uz(model.springs[s][0])] + model.inverse_mass[uz(model.springs[s][1])];
+      if (model.stiffness[s] * w > highest) {
+        highest = model.stiffness[s] * w;
+        stiffest = spring;
+      }
+    }
+    const double w = model.inverse_mass[n];
+    if (w > 0.0 && k + c > 0.0) h = std::min(h, positive_root(w * k, w * c));
+  }
+  return h;
+}
+
+}  // namespace
+
+StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace,
+                            const std::vector<Vec3>& start, int lanczos_steps) {
+  StableStep result;
+  double h = guaranteed_step(model, result.stiffest);
+  result.step = h;
+  if (!std::isfinite(h)) return result;
+
+  const std::size_t nodes = model.rest_position.size();
+  Field scratch(nodes), y(nodes);
+  Field u = start.size() == nodes ? start : scattered(model);
+  // The largest eigenvalue is a convex function of h, so Newton's method comes from above after
+  // its first step and two or three steps do; without damping the first one is exact.
+  for (int newton = 0; newton < 6; ++newton) {
+    const Top top =
+        lanczos([&](const Field& in,
+                    Field& out) { apply(model, x, h * h, 2.0 * h, in, scratch, workspace, out); },
+                u, lanczos_steps);
+    result.iterations += top.steps;
+    if (top.value <= 0.0) return result;
+    u = top.vector;
+    apply(model, x, 1.0, 0.0, u, scratch, workspace, y);
+    const double k = dot(u, y);
+    apply(model, x, 0.0, 1.0, u, scratch, workspace, y);
+    const double c = dot(u, y);
+    result.omega_max = std::sqrt(std::max(0.0, k));
+    result.zeta = k > 0.0 ? 0.5 * c / result.omega_max : 0.0;
+
+    // Safe side: an eigenvalue may be as much larger as the residual says.
+    const double margin = top.value / (top.value + top.residual);
+    const double next = margin * positive_root(k, c);
+    const bool done = std::abs(next - h) <= 2e-3 * h;
+    h = next;
+    if (done) break;
+  }
+  result.step = h;
+  double largest = 0.0;
+  for (const Vec3& v : u) largest = std::max(largest, v.cwiseAbs().maxCoeff());
+  for (Vec3& v : u) v /= largest;
+  result.mode = std::move(u);
+  return result;
+}
+
+std::string describe_spring(const Model& model, Index spring) {
+  const auto s = uz(spring);
+  return fmt::format("spring {} ({} to {}): k = {:.4g} N/m, l0 = {:.4g} m, c = {:.4g} N s/m",
+                     spring, model.node_name(model.springs[s][0]),
+                     model.node_name(model.springs[s][1]), model.stiffness[s], model.rest_length[s],
+                     model.damping[s]);
+}
+
+}  // namespace sinew

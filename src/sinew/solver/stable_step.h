@@ -1,0 +1,34 @@
+// The largest step for which the explicit stepper is stable. docs/methods/stable-step.md.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/state.h"
+
+namespace sinew {
+
+struct StableStep {
+  double step = 0.0;       // h_c [s]; infinity where nothing can move
+  double omega_max = 0.0;  // sqrt of the largest eigenvalue of M^-1 K [rad/s]
+  double zeta = 0.0;       // damping ratio of the mode that limits the step [-]
+  Index stiffest = -1;     // spring with the largest k / m_red
+  int iterations = 0;      // Lanczos steps taken
+  std::vector<Vec3> mode;  // the mode that limits the step (nodes), largest entry 1
+};
+
+// h_c at positions x. A step of the stepper in verlet.h is stable for every mode u (u.Mu = 1) with
+// (h^2 u.Ku + 2 h u.Cu) <= 4; for one mode that is h_c = (2/omega)(sqrt(1 + zeta^2) - zeta). So h_c
+// is where the largest eigenvalue of M^-1 (h^2 K + 2 h C) reaches 4: found by Newton's method on h
+// with Lanczos inside, matrix-free, every estimate on the safe side by its residual.
+//
+// `start`: a guess of the mode, for instance that of an earlier call; may be empty.
+// `lanczos_steps`: most steps of each Lanczos run.
+StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace,
+                            const std::vector<Vec3>& start = {}, int lanczos_steps = 60);
+
+// "spring 12 (body beam, node 3 to body beam, node 4): k = ..., l0 = ..., c = ...".
+std::string describe_spring(const Model& model, Index spring);
+
+}  // namespace sinew

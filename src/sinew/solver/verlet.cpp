@@ -1,0 +1,155 @@
+#include "sinew/solver/verlet.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "sinew/base/error.h"
+#include "sinew/base/parallel.h"
+#include "sinew/contact/ground.h"
+#include "sinew/forces/limits.h"
+#include "sinew/forces/terms.h"
+
+namespace sinew {
+namespace {
+
+constexpr Index none = std::numeric_limits<Index>::max();
+
+// Moves the free nodes. Returns the first node whose new position is not finite, or `none`.
+Index move_free_nodes(const Model& model, const Workspace& workspace, double h, State& state) {
+  const double kick = 0.5 * (state.last_step + h);
+  return parallel_reduce(
+      model.node_count(), none,
+      [&](Range r) {
+        Index broken = none;
+        for (Index i = r.begin; i < r.end; ++i) {
+          const auto k = uz(i);
+          if (model.inverse_mass[k] == 0.0) continue;
+          state.half_velocity[k] += (kick * model.inverse_mass[k]) * workspace.force[k];
+          state.position[k] += h * state.half_velocity[k];
+          if (!state.position[k].allFinite()) broken = std::min(broken, i);
+        }
+        return broken;
+      },
+      [](Index a, Index b) { return std::min(a, b); });
+}
+
+// Moves the pinned nodes along their paths; adds the work their motion does on the springs.
+void move_pins(const Model& model, const Workspace& workspace, double h, State& state) {
+  const double kick = 0.5 * (state.last_step + h);
+  for (const Pin& pin : model.pins) {
+    if (pin.path.keys.empty()) continue;
+    for (const Index node : pin.nodes) {
+      const auto k = uz(node);
+      const Vec3 target = pin.path.at(state.time + h, model.rest_position[k]);
+      const Vec3 velocity = (target - state.position[k]) / h;
+      const Vec3 mean = 0.5 * (state.half_velocity[k] + velocity);
+      state.energy.work_in -= kick * workspace.force[k].dot(mean);
+      state.half_velocity[k] = velocity;
+      state.position[k] = target;
+    }
+  }
+}
+
+// Work of the loads over the step, with v(t) = (w before + w after) / 2; called after the move.
+void add_work_of_loads(const Model& model, const Workspace& workspace, double h, State& state) {
+  const double kick = 0.5 * (state.last_step + h);
+  for (const Load& load : model.loads) {
+    const double share = load_share(load, state.time);
+    if (share == 0.0) continue;
+    const Vec3 each = load.force * (share / static_cast<double>(load.nodes.size()));
+    for (const Index node : load.nodes) {
+      const auto k = uz(node);
+      if (model.inverse_mass[k] == 0.0) continue;
+      const Vec3 v =
+          state.half_velocity[k] - (0.5 * kick * model.inverse_mass[k]) * workspace.force[k];
+      state.energy.work_in += kick * each.dot(v);
+    }
+  }
+}
+
+// Projects the limits, with the ground as a constraint among them; velocities follow.
+void enforce_limits(const Model& model, const Workspace& workspace, double h, State& state,
+                    VerletReport& report) {
+  const std::vector<Vec3> predicted = state.position;
+  Index moved = 1;
+  while (moved > 0 && report.limit_sweeps < model.limit_sweeps) {
+    moved = sweep_limits(model, state.position);
+    if (moved > 0) {
+      ++report.limit_sweeps;
+      if (model.ground) lift_onto_ground(model, state.position);
+    }
+  }
+  if (report.limit_sweeps == 0) return;
+  report.limits_met =
+      moved == 0 || measure_limit_violation(model, state.position) <= model.limit_tolerance;
+
+  // Loss: kinetic energy taken, and the forces' work over the correction by the mean of its ends.
+  state.energy.dissipated += parallel_sum(model.node_count(), [&](Index i) {
+    const auto k = uz(i);
+    if (model.inverse_mass[k] == 0.0) return 0.0;
+    const Vec3 shift = state.position[k] - predicted[k];
+    const Vec3 before = state.half_velocity[k];
+    const Vec3 after = before + shift / h;
+    state.half_velocity[k] = after;
+    return 0.5 * model.mass[k] * (before.squaredNorm() - after.squaredNorm()) +
+           0.5 * workspace.force[k].dot(shift);
+  });
+}
+
+// The spring at the node that pulled hardest for its stiffness, or that is itself not finite.
+Index suspect_spring(const Model& model, const Workspace& workspace, Index node) {
+  Index suspect = -1;
+  double worst = -1.0;
+  for (Index k = model.spring_start[uz(node)]; k < model.spring_start[uz(node) + 1]; ++k) {
+    const Index s = model.node_spring[uz(k)] >> 1;
+    const double pull = workspace.spring_force[uz(s)].norm();
+    if (!(pull <= worst)) {
+      suspect = s;
+      worst = pull;
+    }
+  }
+  return suspect;
+}
+
+[[noreturn]] void report_divergence(const Model& model, const Workspace& workspace,
+                                    const State& state, Index node) {
+  std::string spring;
+  const Index s = suspect_spring(model, workspace, node);
+  if (s >= 0) {
+    spring = fmt::format("; its spring {} ({} to {}, k = {:.4g} N/m, l0 = {:.4g} m) pulled hardest",
+                         s, model.node_name(model.springs[uz(s)][0]),
+                         model.node_name(model.springs[uz(s)][1]), model.stiffness[uz(s)],
+                         model.rest_length[uz(s)]);
+  }
+  throw Error(ErrorKind::diverged,
+              fmt::format("the state is not finite at t = {:.6g} s (step {}): {}{}", state.time,
+                          state.step, model.node_name(node), spring),
+              "take dt = \"auto\", or a smaller dt or more substeps");
+}
+
+}  // namespace
+
+VerletReport verlet_step(const Model& model, double h, State& state, Workspace& workspace) {
+  VerletReport report;
+  state.energy.dissipated += h * compute_forces(model, state, workspace);
+  const Index broken = move_free_nodes(model, workspace, h, state);
+  add_work_of_loads(model, workspace, h, state);
+  move_pins(model, workspace, h, state);
+  if (broken == none) {
+    if (model.ground) {
+      const GroundReport ground = respond_to_ground(model, workspace.force, h, state);
+      report.contacts = ground.contacts;
+      state.energy.dissipated += ground.dissipated;
+    }
+    if (!model.limited.empty()) enforce_limits(model, workspace, h, state, report);
+  }
+  state.last_step = h;
+  state.time += h;
+  ++state.step;
+  if (broken != none) report_divergence(model, workspace, state, broken);
+  return report;
+}
+
+}  // namespace sinew

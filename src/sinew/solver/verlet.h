@@ -1,0 +1,29 @@
+// Position Verlet: one explicit step. docs/methods/verlet.md.
+#pragma once
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/state.h"
+
+namespace sinew {
+
+struct VerletReport {
+  Index contacts = 0;      // nodes that touched the ground
+  int limit_sweeps = 0;    // sweeps that moved a spring
+  bool limits_met = true;  // false: springs still over their limit after the last sweep
+};
+
+// Advances the state by h [s] > 0.
+//
+//   x(t+h) = 2 x(t) - x(t-h) + a(t) h^2,   v(t) = (x(t+h) - x(t-h)) / 2h
+//
+// kept as positions and half-step velocities w = (x(t) - x(t-h)) / h, which is the same to the
+// letter and loses fewer digits:  w += a (h_last + h)/2,  x += h w.  The first step, with
+// h_last = 0 and w = v0, is the start x(-h) = x0 - h v0 + a0 h^2/2. Dashpots and drag see w, the
+// half-step velocity. After the move come the ground, then the limits; velocities follow the
+// corrected positions. A step may differ in length from the last one.
+//
+// Throws Error(diverged) when a position or velocity is not finite any more, and names body, node,
+// spring and time; the state is then the broken one.
+VerletReport verlet_step(const Model& model, double h, State& state, Workspace& workspace);
+
+}  // namespace sinew
