@@ -3,9 +3,10 @@
 #pragma once
 
 #include <array>
-#include <map>
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "sinew/base/error.h"
@@ -31,8 +32,8 @@ struct Selection {
   struct Side {
     int axis = 0;
     bool upper = false;
-    double depth = 0.0;
-  };  // within depth of the body's bounding box side
+    std::optional<double> depth;  // [m]; absent: 1e-6 of the bounding box's diagonal
+  };                              // within depth of the body's bounding box side
 
   bool all = false;
   std::optional<int> label;       // nodes of the tets with this label
@@ -52,6 +53,7 @@ struct SceneRegion {
   std::string name;
   std::vector<int> labels;  // mesh labels it covers
   Material material;        // the body's, with what the region overrides
+  Location where;           // of the labels
 };
 
 struct SceneBody {
@@ -61,9 +63,10 @@ struct SceneBody {
   std::string shape;                      // beam, box, sphere, ellipsoid, cylinder
   std::array<int, 3> cells = {4, 4, 16};  // beam, box
   Vec3 size = Vec3(0.1, 0.1, 0.4);        // beam, box [m]
-  Vec3 radii = Vec3(0.1, 0.1, 0.1);       // sphere (all equal), ellipsoid [m]
-  double radius = 0.05, length = 0.2;     // cylinder [m]
-  int resolution = 8;                     // sphere, ellipsoid, cylinder: cells across
+  Vec3 radii = Vec3(0.1, 0.1, 0.1);       // ellipsoid [m]
+  double radius = 0.05;                   // sphere, cylinder [m]
+  double height = 0.2;                    // cylinder, along z [m]
+  int resolution = 4;                     // sphere, ellipsoid, cylinder: shells
   // Placement: x = position + R(rotation) (scale (X - origin))
   double scale = 1.0;   // metres per mesh unit
   bool center = false;  // origin: the mesh's centroid (by volume)
@@ -74,6 +77,7 @@ struct SceneBody {
   Material material;             // of tets that no region covers
   std::vector<SceneRegion> regions;
   Location where;
+  Location mesh_where;  // of the key mesh or shape
 };
 
 struct ScenePin {
@@ -84,17 +88,19 @@ struct ScenePin {
   Location where;
 };
 
-// Springs from nodes of a body to a point, or each to its nearest node of another body's selection.
+// Springs from each selected node of a body to a point, or to its nearest node of another body's
+// selection.
 struct SceneAttachment {
   std::string name, body;
   Selection select;
   std::optional<Vec3> point;  // [m]
   Path path;                  // of the point
+  bool pivot_given = false;   // else the point
   std::string to_body;
-  std::optional<Selection> to_select;
-  double stiffness = 100.0;           // [N/m] of each spring
-  double damping = 0.0;               // [N s/m] of each spring
-  std::optional<double> rest_length;  // [m]; absent: the distance at the start
+  std::optional<Selection> to_select;  // absent: the other body's surface
+  double stiffness = 100.0;            // [N/m] of each spring
+  double damping = 0.0;                // [N s/m] of each spring
+  std::optional<double> rest_length;   // [m]; absent: the distance at the start
   Location where;
 };
 
@@ -149,7 +155,18 @@ struct Scene {
 
   std::string file;      // the file it came from, for messages
   std::string document;  // the whole scene as TOML with every override in it; parses to this scene
-  std::string base;      // folder that relative mesh paths start from, absolute
+  std::string base;      // folder that relative mesh paths start from
 };
+
+// Reads a scene file; relative mesh paths start from its folder. `overrides` are those of --set,
+// "a.b.c=value" (scene/overrides.h). Everything that can be known without the meshes is checked.
+// Throws Error(io) where the file cannot be read, Error(usage) for an override without '=',
+// Error(input) with file, line and column for everything else.
+Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+// The same for a text; touches no file. `file_name` is for messages, `base` is Scene::base.
+Scene parse_scene(std::string_view text, const std::string& file_name,
+                  const std::filesystem::path& base,
+                  const std::vector<std::string>& overrides = {});
 
 }  // namespace sinew

@@ -1,0 +1,279 @@
+#include "sinew/scene/keys.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/base/text.h"
+
+namespace sinew {
+
+namespace {
+
+constexpr double inf = std::numeric_limits<double>::infinity();
+
+constexpr Interval any{};
+constexpr Interval positive{0.0, inf, true};
+constexpr Interval not_negative{0.0, inf};
+constexpr Interval positive_or_none{0.0, inf, true, false, true};
+constexpr Interval not_negative_or_none{0.0, inf, false, false, true};
+
+constexpr Interval from_to(double low, double high) {
+  return {low, high};
+}
+
+Key boolean(std::string_view name, std::string_view default_value) {
+  return {name, KeyType::boolean, "", default_value, any, ""};
+}
+Key integer(std::string_view name, std::string_view default_value, Interval range = any) {
+  return {name, KeyType::integer, "", default_value, range, ""};
+}
+Key number(std::string_view name, std::string_view unit, std::string_view default_value,
+           Interval range = any) {
+  return {name, KeyType::number, unit, default_value, range, ""};
+}
+Key text(std::string_view name, std::string_view default_value = "") {
+  return {name, KeyType::text, "", default_value, any, ""};
+}
+Key word(std::string_view name, std::string_view default_value, std::string_view words) {
+  return {name, KeyType::word, "", default_value, any, words};
+}
+Key point(std::string_view name, std::string_view unit, std::string_view default_value = "",
+          Interval range = any) {
+  return {name, KeyType::point, unit, default_value, range, ""};
+}
+Key other(std::string_view name, KeyType type, std::string_view unit = "",
+          std::string_view default_value = "", Interval range = any) {
+  return {name, type, unit, default_value, range, ""};
+}
+
+KeyTables make_tables() {
+  using T = KeyType;
+  KeyTables t;
+  t.scene = {"scene",
+             "the top level",
+             {
+                 text("name", "the file's name"),
+                 text("title"),
+                 text("look_for"),
+                 number("duration", "s", "2", positive),
+                 word("stepper", "\"verlet\"", "verlet"),
+                 {"dt", T::number_or_word, "s", "\"auto\"", positive, "auto"},
+                 integer("substeps", "1", from_to(1, 100000)),
+                 number("safety", "", "0.9", {0.0, 1.0, true}),
+                 boolean("allow_unstable", "false"),
+                 point("gravity", "m/s2", "[0, -9.81, 0]"),
+                 integer("limit_sweeps", "20", from_to(0, 10000)),
+                 number("limit_tolerance", "", "1e-3", {0.0, 1.0, true}),
+                 other("body", T::table),
+                 other("pin", T::table),
+                 other("attachment", T::table),
+                 other("force", T::table),
+                 other("probe", T::table),
+                 other("ground", T::table),
+                 other("output", T::table),
+             }};
+  t.body = {"body",
+            "[body.NAME]",
+            {
+                text("mesh"),
+                word("shape", "", "beam box sphere ellipsoid cylinder"),
+                other("cells", T::cells, "", "[4, 4, 16]", from_to(1, 20'000'000)),
+                point("size", "m", "[0.1, 0.1, 0.4]", positive),
+                number("radius", "m", "0.05", positive),
+                point("radii", "m", "[0.1, 0.1, 0.1]", positive),
+                number("height", "m", "0.2", positive),
+                integer("resolution", "4", from_to(1, 100)),
+                number("scale", "m", "1", positive),
+                boolean("center", "false"),
+                other("rotation", T::rotation, "degrees", "[0, 0, 0]"),
+                point("position", "m", "[0, 0, 0]"),
+                point("velocity", "m/s", "[0, 0, 0]"),
+                point("spin", "rad/s", "[0, 0, 0]"),
+                other("region", T::table),
+            }};
+  t.material = {"material",
+                "a material",
+                {
+                    word("law", "\"lloyd\"", "uniform lloyd vangelder"),
+                    number("density", "kg/m3", "1060", positive),
+                    number("young", "Pa", "15e3", positive),
+                    number("poisson", "", "0.45", {-1.0, 0.5, true, true}),
+                    number("spring_stiffness", "N/m", "2e5", positive),
+                    number("spring_damping", "N s/m", "3e3", not_negative),
+                    word("length", "\"tet\"", "tet edge"),
+                    word("damping", "\"ratio\"", "ratio published"),
+                    number("damping_ratio", "", "0.1", not_negative),
+                    number("drag", "1/s", "0", not_negative),
+                    number("stretch_limit", "", "inf", positive_or_none),
+                    number("compress_limit", "", "inf", {0.0, 1.0, true, false, true}),
+                }};
+  t.region = {"region",
+              "[body.NAME.region.NAME]",
+              {
+                  integer("label", ""),
+                  other("labels", T::integers),
+              }};
+  t.motion = {"motion",
+              "a motion",
+              {
+                  other("path", T::tables),
+                  boolean("smooth", "false"),
+                  point("pivot", "m"),
+              }};
+  t.key_frame = {"key_frame",
+                 "a key frame",
+                 {
+                     number("time", "s", "", not_negative),
+                     point("move", "m", "[0, 0, 0]"),
+                     point("turn", "degrees", "[0, 0, 0]"),
+                 }};
+  t.select = {"select",
+              "a selection",
+              {
+                  boolean("all", "false"),
+                  integer("label", ""),
+                  integer("face_label", ""),
+                  integer("node_label", ""),
+                  other("box", T::table),
+                  other("sphere", T::table),
+                  other("half_space", T::table),
+                  word("side", "", "-x +x -y +y -z +z"),
+                  number("depth", "m", "1e-6 of the diagonal", not_negative),
+                  other("nodes", T::integers, "", "", from_to(0, 2147483647)),
+                  point("nearest", "m"),
+                  boolean("surface", "false"),
+              }};
+  t.box = {"box", "a box", {point("min", "m"), point("max", "m")}};
+  t.sphere = {"sphere", "a sphere", {point("center", "m"), number("radius", "m", "", positive)}};
+  t.half_space = {"half_space", "a half-space", {point("point", "m"), point("normal", "")}};
+  t.pin = {"pin", "[pin.NAME]", {text("body", "the only one"), other("select", T::table)}};
+  t.attachment = {"attachment",
+                  "[attachment.NAME]",
+                  {
+                      text("body", "the only one"),
+                      other("select", T::table),
+                      point("point", "m"),
+                      text("to_body"),
+                      other("to_select", T::table, "", "{ surface = true }"),
+                      number("stiffness", "N/m", "100", positive),
+                      number("damping", "N s/m", "0", not_negative),
+                      number("rest_length", "m", "the distance at the start", not_negative),
+                  }};
+  t.force = {"force",
+             "[force.NAME]",
+             {
+                 text("body", "the only one"),
+                 other("select", T::table),
+                 point("force", "N"),
+                 number("start", "s", "0", not_negative),
+                 number("end", "s", "inf", not_negative_or_none),
+                 number("ramp", "s", "0", not_negative),
+             }};
+  t.probe = {"probe", "[probe.NAME]", {text("body", "the only one"), other("select", T::table)}};
+  t.ground = {"ground",
+              "[ground]",
+              {
+                  point("point", "m", "[0, 0, 0]"),
+                  point("normal", "", "[0, 1, 0]"),
+                  number("restitution", "", "0", from_to(0, 1)),
+                  number("friction", "", "0.5", not_negative),
+              }};
+  t.output = {"output",
+              "[output]",
+              {
+                  number("fps", "1/s", "30", {0.0, 1e6, true}),
+                  boolean("vtu", "true"),
+                  word("encoding", "\"zlib\"", "zlib base64 ascii"),
+                  number("checkpoint", "s", "5", not_negative),
+              }};
+  return t;
+}
+
+}  // namespace
+
+bool Interval::contains(double value) const {
+  if (std::isinf(value)) return infinity_allowed && value > 0.0;
+  if (std::isnan(value)) return false;
+  return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+}
+
+std::string Interval::text() const {
+  std::string range;
+  if (std::isinf(high)) {
+    if (!std::isinf(low)) range = fmt::format("{} {}", low_open ? ">" : ">=", low);
+  } else if (!low_open && !high_open) {
+    range = fmt::format("from {} to {}", low, high);
+  } else {
+    range = fmt::format("in {}{}, {}{}", low_open ? '(' : '[', low, high, high_open ? ')' : ']');
+  }
+  return infinity_allowed ? range + ", or inf" : range;
+}
+
+const Key* KeyTable::find(std::string_view key) const {
+  for (const Key& k : keys)
+    if (k.name == key) return &k;
+  return nullptr;
+}
+
+std::vector<const KeyTable*> KeyTables::all() const {
+  return {&scene,  &body,       &material, &region,     &motion, &key_frame, &select, &box,
+          &sphere, &half_space, &pin,      &attachment, &force,  &probe,     &ground, &output};
+}
+
+const KeyTables& key_tables() {
+  static const KeyTables tables = make_tables();
+  return tables;
+}
+
+std::string type_text(const Key& key) {
+  std::string words;
+  for (const std::string& w : split_words(key.words))
+    words += (words.empty() ? "\"" : ", \"") + w + '"';
+  switch (key.type) {
+    case KeyType::boolean:
+      return "true or false";
+    case KeyType::integer:
+      return "an integer";
+    case KeyType::number:
+      return "a number";
+    case KeyType::text:
+      return "a text";
+    case KeyType::word:
+      return "one of " + words;
+    case KeyType::number_or_word:
+      return "a number or " + words;
+    case KeyType::point:
+      return "3 numbers";
+    case KeyType::rotation:
+      return "3 or 4 numbers";
+    case KeyType::cells:
+      return "3 integers";
+    case KeyType::integers:
+      return "an array of integers";
+    case KeyType::table:
+      return "a table";
+    case KeyType::tables:
+      return "an array of tables";
+  }
+  return {};
+}
+
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known) {
+  const std::vector<std::string_view> views(known.begin(), known.end());
+  const std::string near = nearest(word, views);
+  return near.empty() ? std::string() : fmt::format("; did you mean '{}'?", near);
+}
+
+std::vector<std::string> split_words(std::string_view words) {
+  std::vector<std::string> out;
+  while (!words.empty()) {
+    const std::size_t end = std::min(words.find(' '), words.size());
+    if (end > 0) out.emplace_back(words.substr(0, end));
+    words.remove_prefix(std::min(end + 1, words.size()));
+  }
+  return out;
+}
+
+}  // namespace sinew

@@ -1,0 +1,74 @@
+// Every key that a scene may have: one table says its type, unit, default and range. The reader
+// (reader.h) checks against it, messages quote it, and a test holds docs/scene-format.md to it.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace sinew {
+
+enum class KeyType {
+  boolean,
+  integer,
+  number,
+  text,
+  word,            // one of Key::words
+  number_or_word,  // a number, or one of Key::words
+  point,           // three numbers
+  rotation,        // three or four numbers
+  cells,           // three integers
+  integers,        // an array of integers
+  table,           // [table] or { braces }
+  tables,          // an array of tables
+};
+
+// The range of a number, or of each component of an array of numbers.
+struct Interval {
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
+  bool low_open = false;          // low itself is outside
+  bool high_open = false;         // high itself is outside
+  bool infinity_allowed = false;  // "inf" means: none
+
+  bool contains(double value) const;
+  std::string text() const;  // "> 0", "from 0 to 1", "in (-1, 0.5)"; empty: any finite number
+};
+
+struct Key {
+  std::string_view name;
+  KeyType type;
+  std::string_view unit;           // "m"; empty: none
+  std::string_view default_value;  // as it would be written; empty: no default
+  Interval range;
+  std::string_view words;  // "uniform lloyd vangelder"; of KeyType::word and number_or_word
+};
+
+struct KeyTable {
+  std::string_view name;   // "body"; the heading that documents it
+  std::string_view title;  // "[body.NAME]": how messages and the document call it
+  std::vector<Key> keys;
+
+  const Key* find(std::string_view key) const;
+};
+
+// The tables by what they hold.
+struct KeyTables {
+  KeyTable scene, body, material, region, motion, key_frame, select, box, sphere, half_space, pin,
+      attachment, force, probe, ground, output;
+
+  std::vector<const KeyTable*> all() const;
+};
+const KeyTables& key_tables();
+
+// "number", "3 numbers", "one of uniform, lloyd": what a value of this key has to be.
+std::string type_text(const Key& key);
+
+// "; did you mean 'young'?" for the end of a message; empty where no known word is near.
+std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
+
+// The words of a list separated by spaces.
+std::vector<std::string> split_words(std::string_view words);
+
+}  // namespace sinew

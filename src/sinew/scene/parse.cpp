@@ -1,0 +1,124 @@
+#include "sinew/scene/parse.h"
+
+#include <fmt/format.h>
+
+#include <cctype>
+#include <fstream>
+#include <sstream>
+
+#include "sinew/scene/overrides.h"
+
+namespace sinew {
+
+namespace {
+
+constexpr double kMaxFrames = 1e6;
+
+// Names become parts of file names, table columns and --set paths.
+void check_name(const DocEntry& entry, std::string_view kind) {
+  bool good = !entry.key.empty() && entry.key.size() <= 64;
+  for (const char c : entry.key)
+    good = good && (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-');
+  if (!good)
+    throw Error(ErrorKind::input,
+                fmt::format("'{}' cannot name a {}; expected 1 to 64 letters, digits, '_' or '-'",
+                            entry.key.substr(0, 64), kind),
+                "", entry.where);
+}
+
+// Reads every entry of a table of named tables, [kind.NAME].
+template <typename Part, typename Parse>
+void parse_named(const Reader& root, std::string_view kind, std::vector<Part>& out, Parse parse) {
+  const DocValue* table = root.table(kind);
+  if (table == nullptr) return;
+  for (const DocEntry& entry : table->entries) {
+    check_name(entry, kind);
+    if (!entry.value.is_table())
+      throw Error(
+          ErrorKind::input,
+          fmt::format("'{}' in [{}] is {}; expected a table, [{}.NAME]", entry.key, kind,
+                      describe(entry.value), kind),
+          fmt::format("give the {} a name: [{}.{}]", kind, kind, kind == "body" ? "beam" : "first"),
+          entry.where);
+    out.push_back(parse(entry.key, entry.value));
+  }
+}
+
+Scene parse_root(const DocValue& document) {
+  const Reader root(document, "the scene", {&key_tables().scene});
+  Scene scene;
+  root.text("name", scene.name);
+  root.text("title", scene.title);
+  root.text("look_for", scene.look_for);
+  root.number("duration", scene.duration);
+  if (const auto stepper = root.word("stepper")) scene.stepper = *stepper;
+  if (!root.word("dt")) root.number("dt", scene.dt);
+  root.integer("substeps", scene.substeps);
+  root.number("safety", scene.safety);
+  root.boolean("allow_unstable", scene.allow_unstable);
+  root.point("gravity", scene.gravity);
+  root.integer("limit_sweeps", scene.limit_sweeps);
+  root.number("limit_tolerance", scene.limit_tolerance);
+  parse_named(root, "body", scene.bodies, parse_body);
+  if (scene.bodies.empty())
+    throw Error(ErrorKind::input, "the scene has no body: there is nothing to simulate",
+                "add a table [body.NAME] with mesh = \"file\" or shape = \"beam\"", root.where());
+  BodyNames bodies;
+  for (const SceneBody& body : scene.bodies) bodies.push_back(body.name);
+  const auto with_bodies = [&](auto parse) {
+    return [parse, &bodies](const std::string& name, const DocValue& value) {
+      return parse(name, value, bodies);
+    };
+  };
+  parse_named(root, "pin", scene.pins, with_bodies(parse_pin));
+  parse_named(root, "attachment", scene.attachments, with_bodies(parse_attachment));
+  parse_named(root, "force", scene.forces, with_bodies(parse_force));
+  parse_named(root, "probe", scene.probes, with_bodies(parse_probe));
+  if (const DocValue* ground = root.table("ground")) scene.ground = parse_ground(*ground);
+  if (const DocValue* output = root.table("output")) scene.output = parse_output(*output);
+  if (scene.duration * scene.output.fps > kMaxFrames)
+    root.fail("duration",
+              fmt::format("{} s at {} frames a second are more than {} frames", scene.duration,
+                          scene.output.fps, kMaxFrames),
+              "lower output.fps or the duration");
+  return scene;
+}
+
+}  // namespace
+
+Scene parse_scene(std::string_view text, const std::string& file_name,
+                  const std::filesystem::path& base, const std::vector<std::string>& overrides) {
+  DocValue document = parse_document(text, file_name);
+  apply_overrides(document, overrides);
+  Scene scene = parse_root(document);
+  if (scene.name.empty()) scene.name = std::filesystem::path(file_name).stem().string();
+  scene.file = file_name;
+  scene.base = base.string();
+  scene.document = write_document(document);
+  return scene;
+}
+
+Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const std::string name = file.string();
+  std::error_code failed;
+  if (!std::filesystem::exists(file, failed))
+    throw Error(ErrorKind::io, "there is no such scene file", "check the path", {name, 0, 0});
+  if (!std::filesystem::is_regular_file(file, failed))
+    throw Error(ErrorKind::io, "this is no file", "name a scene file, such as scenes/beam.toml",
+                {name, 0, 0});
+  const auto size = std::filesystem::file_size(file, failed);
+  if (!failed && size > kMaxSceneBytes)
+    throw Error(ErrorKind::input,
+                fmt::format("{} bytes: a scene has at most {}", size, kMaxSceneBytes),
+                "is this a scene? meshes belong into files of their own", {name, 0, 0});
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in)
+    throw Error(ErrorKind::io, "the scene file cannot be read", "check its permissions",
+                {name, 0, 0});
+  const std::filesystem::path base = std::filesystem::absolute(file).parent_path();
+  return parse_scene(text.str(), name, base, overrides);
+}
+
+}  // namespace sinew

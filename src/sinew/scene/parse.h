@@ -1,0 +1,35 @@
+// The parts of a scene, each read from its table. Every function throws Error(input).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sinew/scene/reader.h"
+#include "sinew/scene/scene.h"
+
+namespace sinew {
+
+using BodyNames = std::vector<std::string>;  // of the scene; never empty
+
+SceneBody parse_body(const std::string& name, const DocValue& value);
+ScenePin parse_pin(const std::string& name, const DocValue& value, const BodyNames& bodies);
+SceneAttachment parse_attachment(const std::string& name, const DocValue& value,
+                                 const BodyNames& bodies);
+SceneForce parse_force(const std::string& name, const DocValue& value, const BodyNames& bodies);
+SceneProbe parse_probe(const std::string& name, const DocValue& value, const BodyNames& bodies);
+SceneGround parse_ground(const DocValue& value);
+SceneOutput parse_output(const DocValue& value);
+
+// The selection under `key` of the reader's table, which has to be there.
+Selection parse_selection(const Reader& reader, const std::string& key);
+// The keys path, smooth and pivot.
+Path parse_motion(const Reader& reader, bool& pivot_given);
+// The material keys of a table that has them, on top of what `base` says.
+Material parse_material(const Reader& reader, const Material& base);
+// The name of a body that the scene has; the only one's where the key is absent.
+std::string parse_body_name(const Reader& reader, std::string_view key, const BodyNames& bodies);
+// A point that must not be 0, as a unit vector; `otherwise` where the key is absent.
+Vec3 parse_direction(const Reader& reader, std::string_view key, const Vec3& otherwise);
+
+}  // namespace sinew

@@ -1,0 +1,165 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numbers>
+
+#include "sinew/scene/parse.h"
+
+namespace sinew {
+
+namespace {
+
+constexpr double radians = std::numbers::pi / 180.0;
+
+// A key that only some shapes have.
+struct ShapeKey {
+  std::string_view key;
+  std::string_view shapes;
+};
+constexpr std::array<ShapeKey, 6> shape_keys = {{
+    {"cells", "beam box"},
+    {"size", "beam box"},
+    {"radius", "sphere cylinder"},
+    {"radii", "ellipsoid"},
+    {"height", "cylinder"},
+    {"resolution", "sphere ellipsoid cylinder"},
+}};
+
+// A key that would have no effect is a mistake.
+void refuse_shape_keys_that_do_not_fit(const Reader& reader, const SceneBody& body) {
+  const std::string source =
+      body.shape.empty() ? std::string("a mesh file") : fmt::format("shape = \"{}\"", body.shape);
+  for (const ShapeKey& k : shape_keys) {
+    if (!reader.has(k.key)) continue;
+    const std::vector<std::string> owners = split_words(k.shapes);
+    if (std::find(owners.begin(), owners.end(), body.shape) != owners.end()) continue;
+    std::string list;
+    for (const std::string& owner : owners) list += (list.empty() ? "" : ", ") + owner;
+    reader.fail(k.key, fmt::format("{} does not go with {}", reader.called(k.key), source),
+                fmt::format("remove it; it belongs to: {}", list));
+  }
+}
+
+void parse_source(const Reader& reader, SceneBody& body) {
+  reader.text("mesh", body.mesh);
+  if (const auto shape = reader.word("shape")) body.shape = *shape;
+  if (reader.has("mesh") && reader.has("shape"))
+    reader.fail("shape", fmt::format("{} has both a mesh and a shape", reader.name()),
+                "remove one of them");
+  if (!reader.has("mesh") && !reader.has("shape"))
+    throw Error(ErrorKind::input, fmt::format("{} has neither a mesh nor a shape", reader.name()),
+                "add mesh = \"file\" or shape = \"beam\"", reader.where());
+  if (body.shape.empty() && body.mesh.empty())
+    reader.fail("mesh", fmt::format("{} is empty; expected a file name", reader.called("mesh")),
+                "name a mesh file, relative to the scene's folder");
+  body.mesh_where = reader.where(reader.has("mesh") ? "mesh" : "shape");
+
+  reader.cells("cells", body.cells);
+  reader.point("size", body.size);
+  reader.number("radius", body.radius);
+  reader.point("radii", body.radii);
+  reader.number("height", body.height);
+  reader.integer("resolution", body.resolution);
+  refuse_shape_keys_that_do_not_fit(reader, body);
+}
+
+// Degrees about the fixed axes x, then y, then z; or a quaternion w, x, y, z.
+Eigen::Quaterniond parse_rotation(const Reader& reader) {
+  const std::vector<double> r = reader.numbers("rotation");
+  if (r.size() == 3)
+    return Eigen::Quaterniond(Eigen::AngleAxisd(r[2] * radians, Vec3::UnitZ()) *
+                              Eigen::AngleAxisd(r[1] * radians, Vec3::UnitY()) *
+                              Eigen::AngleAxisd(r[0] * radians, Vec3::UnitX()));
+  if (r.size() == 4) {
+    const double largest = Eigen::Vector4d(r[0], r[1], r[2], r[3]).cwiseAbs().maxCoeff();
+    if (largest == 0.0)
+      reader.fail("rotation",
+                  fmt::format("{} is a quaternion of length 0", reader.called("rotation")),
+                  "no rotation is [1, 0, 0, 0]");
+    return Eigen::Quaterniond(r[0] / largest, r[1] / largest, r[2] / largest, r[3] / largest)
+        .normalized();
+  }
+  return Eigen::Quaterniond::Identity();
+}
+
+SceneRegion parse_region(const DocEntry& entry, const std::string& body, const Material& base) {
+  const Reader reader(entry.value, fmt::format("[body.{}.region.{}]", body, entry.key),
+                      {&key_tables().region, &key_tables().material});
+  SceneRegion region;
+  region.name = entry.key;
+  if (reader.has("label") == reader.has("labels"))
+    throw Error(
+        ErrorKind::input,
+        fmt::format("{} has {}", reader.name(),
+                    reader.has("label") ? "both a label and labels" : "neither a label nor labels"),
+        "say which of the mesh's labels it covers: label = 1 or labels = [1, 2]", reader.where());
+  int label = 0;
+  if (reader.integer("label", label)) region.labels = {label};
+  reader.integers("labels", region.labels);
+  region.where = reader.where(reader.has("label") ? "label" : "labels");
+  if (region.labels.empty())
+    reader.fail("labels", fmt::format("{} is empty", reader.called("labels")),
+                "say which of the mesh's labels it covers: labels = [1, 2]");
+  region.material = parse_material(reader, base);
+  return region;
+}
+
+void refuse_shared_labels(const SceneBody& body) {
+  std::map<int, const SceneRegion*> owner;
+  for (const SceneRegion& region : body.regions)
+    for (const int label : region.labels) {
+      const auto [entry, added] = owner.emplace(label, &region);
+      if (!added)
+        throw Error(ErrorKind::input,
+                    fmt::format("label {} of [body.{}] is in region '{}' and in region '{}'", label,
+                                body.name, entry->second->name, region.name),
+                    "a label belongs to one region, once", region.where);
+    }
+}
+
+}  // namespace
+
+Material parse_material(const Reader& reader, const Material& base) {
+  Material m = base;
+  if (const auto law = reader.word("law"))
+    m.law = *law == "uniform" ? Law::uniform : *law == "lloyd" ? Law::lloyd : Law::vangelder;
+  reader.number("density", m.density);
+  reader.number("young", m.young);
+  reader.number("poisson", m.poisson);
+  reader.number("spring_stiffness", m.spring_stiffness);
+  reader.number("spring_damping", m.spring_damping);
+  if (const auto length = reader.word("length"))
+    m.length = *length == "tet" ? LloydLength::tet : LloydLength::edge;
+  if (const auto damping = reader.word("damping"))
+    m.damping = *damping == "ratio" ? Damping::ratio : Damping::published;
+  reader.number("damping_ratio", m.damping_ratio);
+  reader.number("drag", m.drag);
+  reader.number("stretch_limit", m.stretch_limit);
+  reader.number("compress_limit", m.compress_limit);
+  return m;
+}
+
+SceneBody parse_body(const std::string& name, const DocValue& value) {
+  const Reader reader(value, fmt::format("[body.{}]", name),
+                      {&key_tables().body, &key_tables().material});
+  SceneBody body;
+  body.name = name;
+  body.where = reader.where();
+  parse_source(reader, body);
+  reader.number("scale", body.scale);
+  reader.boolean("center", body.center);
+  body.rotation = parse_rotation(reader);
+  reader.point("position", body.position);
+  reader.point("velocity", body.velocity);
+  reader.point("spin", body.spin);
+  body.material = parse_material(reader, Material{});
+  if (const DocValue* regions = reader.table("region"))
+    for (const DocEntry& entry : regions->entries)
+      body.regions.push_back(parse_region(entry, name, body.material));
+  refuse_shared_labels(body);
+  return body;
+}
+
+}  // namespace sinew

@@ -1,0 +1,71 @@
+// Reads a table of a scene by its key table (keys.h): unknown keys, wrong types and values out of
+// range are Error(input) with file, line, column and what was expected.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sinew/base/vec.h"
+#include "sinew/scene/document.h"
+#include "sinew/scene/keys.h"
+
+namespace sinew {
+
+class Reader {
+ public:
+  // `name` is how messages call this table: "[body.beam]", "'select' of [pin.end]". Throws for a
+  // value that is no table and for keys that none of `tables` has.
+  Reader(const DocValue& value, std::string name, std::initializer_list<const KeyTable*> tables);
+
+  const std::string& name() const { return name_; }
+  const Location& where() const { return table_.where; }
+  bool has(std::string_view key) const { return table_.find(key) != nullptr; }
+  // Where the key's value stands; the table's own place if there is none.
+  Location where(std::string_view key) const;
+
+  // Each leaves `out` as it is, and returns false, where the key is absent.
+  bool boolean(std::string_view key, bool& out) const;
+  bool integer(std::string_view key, int& out) const;
+  bool integer(std::string_view key, std::optional<int>& out) const;
+  bool number(std::string_view key, double& out) const;
+  bool number(std::string_view key, std::optional<double>& out) const;
+  bool text(std::string_view key, std::string& out) const;
+  bool point(std::string_view key, Vec3& out) const;
+  bool point(std::string_view key, std::optional<Vec3>& out) const;
+  bool cells(std::string_view key, std::array<int, 3>& out) const;
+  bool integers(std::string_view key, std::vector<int>& out) const;
+
+  // The word of a KeyType::word or number_or_word; absent where the value is a number or missing.
+  std::optional<std::string> word(std::string_view key) const;
+  // The numbers of a point or rotation, in the unit of the key table; empty where absent.
+  std::vector<double> numbers(std::string_view key) const;
+  // A table within this one; null where absent.
+  const DocValue* table(std::string_view key) const;
+  // The tables of an array; empty where absent.
+  std::vector<const DocValue*> tables(std::string_view key) const;
+
+  // "'young' in [body.beam]": how messages name a key.
+  std::string called(std::string_view key) const;
+  // Throws Error(input) at the key's value.
+  [[noreturn]] void fail(std::string_view key, const std::string& message,
+                         const std::string& remedy) const;
+
+ private:
+  const Key& key_of(std::string_view key) const;
+  void refuse_unknown() const;
+  [[noreturn]] void wrong_type(const Key& key, const DocValue& value) const;
+  double in_range(const Key& key, double value, const DocValue& where) const;
+  double number_of(const Key& key, const DocValue& value) const;
+  int integer_of(const Key& key, const DocValue& value) const;
+
+  const DocValue& table_;
+  std::string name_;
+  std::vector<const KeyTable*> tables_;
+};
+
+}  // namespace sinew
