@@ -1,0 +1,16 @@
+// Help for words that a user mistyped.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace sinew {
+
+// The known word that was probably meant: the one with the fewest edits (insert, delete, replace or
+// swap neighbouring letters; case does not count), the earlier of two as near. At most one edit for
+// every three letters. Failing that, a known word of which `word` is a longer or shorter form
+// ("youngs_modulus" for "young"). Empty if nothing is near.
+std::string nearest(std::string_view word, std::span<const std::string_view> known);
+
+}  // namespace sinew

@@ -1,0 +1,374 @@
+#include "sinew/mesh/doctor.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+
+#include "sinew/base/error.h"
+#include "sinew/mesh/faces.h"
+#include "sinew/mesh/surface.h"
+
+namespace sinew {
+namespace {
+
+constexpr double kLargestCoordinate = 1e50;
+constexpr double kFlat = 1e-9;  // a regular tet has volume / edge^3 = 0.118
+
+// Counts finds and keeps the first few.
+struct Finds {
+  std::int64_t count = 0;
+  std::vector<std::vector<Index>> first;
+
+  void add(std::vector<Index> ids) {
+    if (count++ < static_cast<std::int64_t>(kFirstIds)) first.push_back(std::move(ids));
+  }
+};
+
+// "(3, 7, 12)", "(0-1-4, 2-5-6, ...)"
+std::string list_ids(const Finds& finds) {
+  std::vector<std::string> ids;
+  for (const auto& id : finds.first) ids.push_back(fmt::format("{}", fmt::join(id, "-")));
+  if (finds.count > static_cast<std::int64_t>(ids.size())) ids.push_back("...");
+  return fmt::format("({})", fmt::join(ids, ", "));
+}
+
+class Doctor {
+ public:
+  explicit Doctor(const TetMesh& mesh) : mesh_(mesh) {}
+
+  Diagnosis examine() {
+    check_empty();
+    check_ids();
+    check_coordinates();
+    check_tets();
+    check_faces();
+    check_nodes();
+    check_components();
+    std::stable_sort(diagnosis_.problems.begin(), diagnosis_.problems.end(),
+                     [](const Problem& a, const Problem& b) { return a.kind < b.kind; });
+    return std::move(diagnosis_);
+  }
+
+ private:
+  void check_empty();
+  void check_ids();
+  void check_coordinates();
+  void check_tets();
+  void check_faces();
+  void check_surface(const FaceTable& faces, std::span<const Tet> tets);
+  void check_vertices(std::span<const Triangle> triangles);
+  void check_nodes();
+  void check_components();
+
+  // One noun for one thing and another for several; `what` follows the ids.
+  void report(ProblemKind kind, Severity severity, const Finds& finds, const char* one,
+              const char* several, const char* what, const char* remedy) {
+    if (finds.count == 0) return;
+    diagnosis_.problems.push_back(
+        {kind, severity, finds.count, finds.first,
+         fmt::format("{} {} {}: {}", finds.count, finds.count == 1 ? one : several, list_ids(finds),
+                     what),
+         remedy});
+  }
+
+  const TetMesh& mesh_;
+  Diagnosis diagnosis_;
+  std::vector<char> sound_node_;  // exists and is finite (nodes)
+  std::vector<Index> sound_;      // tets fit for the geometric and topological checks
+};
+
+void Doctor::check_empty() {
+  if (!mesh_.nodes.empty() && !mesh_.tets.empty()) return;
+  diagnosis_.problems.push_back(
+      {ProblemKind::empty,
+       Severity::fatal,
+       1,
+       {},
+       fmt::format("the mesh is empty: {} nodes, {} tetrahedra", mesh_.nodes.size(),
+                   mesh_.tets.size()),
+       mesh_.faces.empty() ? "give a file with tetrahedra"
+                           : "the file holds a surface: fill it with tetrahedra in a mesher"});
+}
+
+void Doctor::check_ids() {
+  const Index nodes = mesh_.node_count();
+  const auto bad = [&](Index i) { return i < 0 || i >= nodes; };
+  Finds tets, faces;
+  for (std::size_t t = 0; t < mesh_.tets.size(); ++t) {
+    if (std::any_of(mesh_.tets[t].begin(), mesh_.tets[t].end(), bad)) {
+      tets.add({static_cast<Index>(t)});
+    } else {
+      sound_.push_back(static_cast<Index>(t));
+    }
+  }
+  for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
+    if (std::any_of(mesh_.faces[f].begin(), mesh_.faces[f].end(), bad)) {
+      faces.add({static_cast<Index>(f)});
+    }
+  }
+  report(ProblemKind::bad_node_id, Severity::fatal, tets, "tet", "tets",
+         "names a node that does not exist", "export the mesh again");
+  report(ProblemKind::bad_node_id, Severity::fatal, faces, "labelled face", "labelled faces",
+         "names a node that does not exist", "export the mesh again");
+}
+
+void Doctor::check_coordinates() {
+  Finds finds;
+  sound_node_.assign(mesh_.nodes.size(), 1);
+  for (std::size_t i = 0; i < mesh_.nodes.size(); ++i) {
+    // Written so that nan fails.
+    if (mesh_.nodes[i].array().abs().maxCoeff<Eigen::PropagateNaN>() <= kLargestCoordinate)
+      continue;
+    sound_node_[i] = 0;
+    finds.add({static_cast<Index>(i)});
+  }
+  std::erase_if(sound_, [&](Index t) {
+    const Tet& tet = mesh_.tets[uz(t)];
+    return std::any_of(tet.begin(), tet.end(), [&](Index i) { return sound_node_[uz(i)] == 0; });
+  });
+  report(ProblemKind::non_finite, Severity::fatal, finds, "node", "nodes",
+         "a coordinate is nan, inf or beyond 1e50", "export the mesh again");
+}
+
+// Repeated nodes, duplicates, volumes. Leaves in sound_ the tets that have neither of the first
+// two.
+void Doctor::check_tets() {
+  Finds repeated, duplicate, degenerate;
+  std::vector<std::pair<Tet, Index>> keys;
+  keys.reserve(sound_.size());
+  for (const Index t : sound_) {
+    Tet key = mesh_.tets[uz(t)];
+    std::sort(key.begin(), key.end());
+    if (std::adjacent_find(key.begin(), key.end()) == key.end()) {
+      keys.emplace_back(key, t);
+    } else {
+      repeated.add({t});
+    }
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<Index> copies;
+  sound_.clear();
+  for (std::size_t k = 0; k < keys.size(); ++k) {
+    const bool copy = k > 0 && keys[k].first == keys[k - 1].first;
+    (copy ? copies : sound_).push_back(keys[k].second);
+  }
+  std::sort(copies.begin(), copies.end());
+  std::sort(sound_.begin(), sound_.end());
+  for (const Index t : copies) duplicate.add({t});
+
+  std::vector<Index> positive, negative;
+  for (const Index t : sound_) {
+    const Tet& tet = mesh_.tets[uz(t)];
+    double longest = 0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = a + 1; b < 4; ++b) {
+        longest =
+            std::max(longest, (mesh_.nodes[uz(tet[b])] - mesh_.nodes[uz(tet[a])]).squaredNorm());
+      }
+    }
+    const double volume = signed_volume(mesh_.nodes, tet);
+    if (std::abs(volume) <= kFlat * longest * std::sqrt(longest)) {
+      degenerate.add({t});
+    } else {
+      (volume > 0 ? positive : negative).push_back(t);
+    }
+  }
+  report(ProblemKind::repeated_node, Severity::fatal, repeated, "tet", "tets",
+         "names the same node twice", "remove collapsed tets in the mesher");
+  report(ProblemKind::duplicate_tet, Severity::fatal, duplicate, "duplicate tet", "duplicate tets",
+         "the same four nodes as an earlier tet", "remove duplicate tets in the mesher");
+  report(ProblemKind::degenerate, Severity::fatal, degenerate, "degenerate tet", "degenerate tets",
+         "no volume", "remesh, or improve the mesh (Gmsh: Mesh.Optimize; CGAL: perturb and exude)");
+
+  const bool convention = negative.size() > positive.size();
+  Finds all, odd;
+  if (convention) {
+    for (const Index t : negative) all.add({t});
+  }
+  for (const Index t : convention ? positive : negative) odd.add({t});
+  report(ProblemKind::inverted_all, Severity::repairable, all, "tet", "tets",
+         "corners in the opposite order, the file's convention", "");
+  report(ProblemKind::inverted, Severity::repairable, odd, "inverted tet", "inverted tets",
+         convention ? "corners not in the order of the others" : "negative volume", "");
+}
+
+void Doctor::check_faces() {
+  std::vector<Tet> tets;  // as repair() would turn them
+  tets.reserve(sound_.size());
+  for (const Index t : sound_) {
+    tets.push_back(mesh_.tets[uz(t)]);
+    if (signed_volume(mesh_.nodes, tets.back()) < 0) std::swap(tets.back()[2], tets.back()[3]);
+  }
+  const FaceTable faces = build_faces(tets, mesh_.node_count());
+  Finds shared, overlapping;
+  for (Index f = 0; f < faces.face_count(); ++f) {
+    const auto sides = faces.sides_of(f);
+    const Triangle& face = faces.faces[uz(f)];
+    if (sides.size() > 2) shared.add({face.begin(), face.end()});
+    if (sides.size() == 2 && outward_face(tets, sides[0]) == outward_face(tets, sides[1])) {
+      overlapping.add({face.begin(), face.end()});
+    }
+  }
+  report(ProblemKind::non_manifold_face, Severity::fatal, shared, "non-manifold face",
+         "non-manifold faces", "shared by more than two tets", "remove the overlapping tets");
+  report(ProblemKind::overlap, Severity::warning, overlapping, "folded face", "folded faces",
+         "both tets lie on the same side, so they overlap", "remesh, or untangle the mesh");
+  check_surface(faces, tets);
+
+  Finds loose;
+  for (std::size_t f = 0; f < mesh_.faces.size(); ++f) {
+    Triangle face = mesh_.faces[f];
+    std::sort(face.begin(), face.end());
+    if (face[0] < 0 || face[2] >= mesh_.node_count()) continue;
+    if (!std::binary_search(faces.faces.begin(), faces.faces.end(), face)) {
+      loose.add({mesh_.faces[f].begin(), mesh_.faces[f].end()});
+    }
+  }
+  report(ProblemKind::loose_face, Severity::warning, loose, "loose face", "loose faces",
+         "labelled, but the face of no tet", "export surface and tets from the same mesh");
+}
+
+void Doctor::check_surface(const FaceTable& faces, std::span<const Tet> tets) {
+  std::vector<Triangle> triangles;
+  std::vector<Edge> edges;
+  for (Index f = 0; f < faces.face_count(); ++f) {
+    const auto sides = faces.sides_of(f);
+    if (sides.size() != 1) continue;
+    triangles.push_back(outward_face(tets, sides[0]));
+    const auto& [a, b, c] = faces.faces[uz(f)];
+    edges.insert(edges.end(), {{a, b}, {a, c}, {b, c}});
+  }
+  std::sort(edges.begin(), edges.end());
+  Finds finds;
+  for (auto edge = edges.begin(); edge != edges.end();) {
+    const auto next = std::find_if(edge, edges.end(), [&](const Edge& e) { return e != *edge; });
+    if (next - edge > 2) finds.add({edge->begin(), edge->end()});
+    edge = next;
+  }
+  report(ProblemKind::non_manifold_edge, Severity::warning, finds, "non-manifold edge",
+         "non-manifold edges", "the surface touches itself along it",
+         "parts that meet at an edge only turn about it like a hinge");
+  check_vertices(triangles);
+}
+
+// The surface triangles at a node form one fan, or the surface touches itself there.
+void Doctor::check_vertices(std::span<const Triangle> triangles) {
+  struct Spoke {  // the triangle at `node` that holds the edge to `other`
+    Index node, other, triangle;
+    auto operator<=>(const Spoke&) const = default;
+  };
+  std::vector<Spoke> spokes;
+  spokes.reserve(6 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (const Index node : triangles[t]) {
+      for (const Index other : triangles[t]) {
+        if (other != node) spokes.push_back({node, other, static_cast<Index>(t)});
+      }
+    }
+  }
+  std::sort(spokes.begin(), spokes.end());
+
+  Finds finds;
+  for (auto begin = spokes.begin(); begin != spokes.end();) {
+    const auto end =
+        std::find_if(begin, spokes.end(), [&](const Spoke& s) { return s.node != begin->node; });
+    // Each triangle is an edge between its two spokes' other ends: count the connected sets.
+    std::vector<Index> ends;
+    for (auto s = begin; s != end; ++s) {
+      if (ends.empty() || ends.back() != s->other) ends.push_back(s->other);
+    }
+    const auto local = [&](Index node) {
+      return static_cast<Index>(std::lower_bound(ends.begin(), ends.end(), node) - ends.begin());
+    };
+    std::vector<Triangle> links;
+    for (auto s = begin; s != end; ++s) {
+      for (const Index third : triangles[uz(s->triangle)]) {
+        if (third != begin->node) links.push_back({local(s->other), local(third), local(third)});
+      }
+    }
+    if (connected_components(links, static_cast<Index>(ends.size())).count > 1) {
+      finds.add({begin->node});
+    }
+    begin = end;
+  }
+  report(ProblemKind::non_manifold_vertex, Severity::warning, finds, "non-manifold node",
+         "non-manifold nodes", "the surface touches itself there",
+         "parts that meet at a node only turn about it like a joint");
+}
+
+void Doctor::check_nodes() {
+  std::vector<char> used(mesh_.nodes.size(), 0);
+  for (const Tet& tet : mesh_.tets) {
+    for (const Index i : tet) {
+      if (i >= 0 && i < mesh_.node_count()) used[uz(i)] = 1;
+    }
+  }
+  Finds unreferenced;
+  std::vector<Index> by_position;
+  for (Index i = 0; i < mesh_.node_count(); ++i) {
+    if (used[uz(i)] == 0) {
+      unreferenced.add({i});
+    } else if (sound_node_[uz(i)] != 0) {
+      by_position.push_back(i);
+    }
+  }
+  const auto position = [&](Index i) {
+    const Vec3& x = mesh_.nodes[uz(i)];
+    return std::array<double, 3>{x.x(), x.y(), x.z()};
+  };
+  std::stable_sort(by_position.begin(), by_position.end(),
+                   [&](Index i, Index j) { return position(i) < position(j); });
+  std::vector<Index> copies;
+  for (std::size_t k = 1; k < by_position.size(); ++k) {
+    if (position(by_position[k]) == position(by_position[k - 1])) copies.push_back(by_position[k]);
+  }
+  std::sort(copies.begin(), copies.end());
+  Finds duplicate;
+  for (const Index i : copies) duplicate.add({i});
+
+  report(ProblemKind::unreferenced_node, Severity::repairable, unreferenced, "unreferenced node",
+         "unreferenced nodes", "named by no tet", "");
+  report(ProblemKind::duplicate_node, Severity::warning, duplicate, "duplicate node",
+         "duplicate nodes", "at the position of an earlier node, so parts may not be connected",
+         "merge duplicate nodes in the mesher (Gmsh: Coherence Mesh)");
+}
+
+void Doctor::check_components() {
+  std::vector<Tet> tets;
+  tets.reserve(sound_.size());
+  for (const Index t : sound_) tets.push_back(mesh_.tets[uz(t)]);
+  const Components components = connected_components(tets, mesh_.node_count());
+  if (components.count < 2) return;
+  Finds parts;
+  for (std::size_t k = 0; k < tets.size(); ++k) {
+    if (components.of[k] == parts.count) parts.add({sound_[k]});
+  }
+  report(ProblemKind::components, Severity::warning, parts, "part", "unconnected parts",
+         "they share no node, so they do not pull at each other; the ids are each part's first tet",
+         "join them in the mesher, or make each a body of its own");
+}
+
+void require_label_sizes(const TetMesh& mesh) {
+  const auto fits = [](std::size_t labels, std::size_t size) {
+    return labels == 0 || labels == size;
+  };
+  if (fits(mesh.tet_label.size(), mesh.tets.size()) &&
+      fits(mesh.node_label.size(), mesh.nodes.size()) &&
+      fits(mesh.face_label.size(), mesh.faces.size())) {
+    return;
+  }
+  throw Error(ErrorKind::internal, "a mesh with label arrays of the wrong length");
+}
+
+}  // namespace
+
+Diagnosis diagnose(const TetMesh& mesh) {
+  require_label_sizes(mesh);
+  return Doctor(mesh).examine();
+}
+
+}  // namespace sinew
