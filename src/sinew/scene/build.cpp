@@ -1,0 +1,238 @@
+#include "sinew/scene/build.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <set>
+
+#include "sinew/forces/assemble.h"
+#include "sinew/mesh/shapes.h"
+#include "sinew/scene/place.h"
+#include "sinew/scene/select.h"
+
+namespace sinew {
+
+namespace {
+
+const Vec3& position(const Model& model, Index node) {
+  return model.rest_position[static_cast<std::size_t>(node)];
+}
+
+Vec3 mean(const Model& model, const std::vector<Index>& nodes) {
+  Vec3 sum = Vec3::Zero();
+  for (const Index node : nodes) sum += position(model, node);
+  return sum / static_cast<double>(nodes.size());
+}
+
+// ---- bodies ----
+
+[[noreturn]] void refuse_label(const SceneBody& body, const SceneRegion& region, int label,
+                               const std::set<int>& known) {
+  std::string list;
+  for (const int l : known) list += (list.empty() ? "" : ", ") + std::to_string(l);
+  throw Error(ErrorKind::input,
+              fmt::format("[body.{}.region.{}] covers label {}, which the mesh does not have",
+                          body.name, region.name, label),
+              "its tets have the labels: " + list, region.where);
+}
+
+// Materials by region: those of the scene, then the body's own for the labels that none covers.
+void assign_regions(const PlacedBody& placed, BodySpec& spec) {
+  const SceneBody& body = *placed.body;
+  const TetMesh& mesh = placed.mesh;
+  std::set<int> known(mesh.tet_label.begin(), mesh.tet_label.end());
+  if (mesh.tet_label.empty()) known = {0};
+  std::map<int, int> region_of;
+  for (const SceneRegion& region : body.regions) {
+    for (const int label : region.labels) {
+      if (known.count(label) == 0) refuse_label(body, region, label, known);
+      region_of[label] = static_cast<int>(spec.materials.size());
+    }
+    spec.regions.push_back(region.name);
+    spec.materials.push_back(region.material);
+  }
+  const int rest = static_cast<int>(spec.materials.size());
+  if (region_of.size() < known.size()) {
+    spec.regions.push_back("rest");
+    spec.materials.push_back(body.material);
+  }
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const auto found = region_of.find(mesh.tet_label.empty() ? 0 : mesh.tet_label[t]);
+    spec.tet_region.push_back(found == region_of.end() ? rest : found->second);
+  }
+}
+
+// Finite materials can still multiply to something that is not.
+void check_finite(const Model& model, const SceneBody& body) {
+  const Body& b = model.bodies.back();
+  bool good = true;
+  for (Index i = b.nodes.begin; i < b.nodes.end; ++i) {
+    const double mass = model.mass[static_cast<std::size_t>(i)];
+    good = good && std::isnormal(mass) && std::isfinite(1.0 / mass);
+  }
+  for (Index i = b.springs.begin; i < b.springs.end; ++i) {
+    const auto s = static_cast<std::size_t>(i);
+    good = good && std::isfinite(model.stiffness[s]) && std::isfinite(model.damping[s]);
+  }
+  if (!good)
+    throw Error(ErrorKind::input,
+                fmt::format("the masses or springs of [body.{}] are too large or too small to "
+                            "compute with",
+                            body.name),
+                "check its density, stiffness and scale; they are in SI units", body.where);
+}
+
+std::vector<PlacedBody> add_bodies(const Scene& scene, Model& model, BuildReport* report) {
+  std::vector<PlacedBody> bodies;
+  for (const SceneBody& body : scene.bodies) {
+    PlacedBody placed = place(scene, body);
+    placed.first_node = model.node_count();
+    if (model.tet_count() + static_cast<std::int64_t>(placed.mesh.tet_count()) > kMaxShapeTets)
+      throw Error(
+          ErrorKind::input,
+          fmt::format("with [body.{}] the scene has more than {} tets", body.name, kMaxShapeTets),
+          "use fewer or coarser meshes", body.where);
+    BodySpec spec;
+    spec.name = body.name;
+    spec.mesh = placed.mesh;
+    spec.velocity = body.velocity;
+    spec.spin = body.spin;
+    assign_regions(placed, spec);
+    add_body(model, spec);
+    check_finite(model, body);
+    if (report != nullptr)
+      report->bodies.push_back({body.name, placed.source, placed.mesh.node_count(),
+                                placed.mesh.tet_count(), placed.warnings});
+    bodies.push_back(std::move(placed));
+  }
+  return bodies;
+}
+
+// ---- what acts on them ----
+
+class Parts {
+ public:
+  Parts(const Scene& scene, const std::vector<PlacedBody>& bodies, Model& model)
+      : scene_(scene), bodies_(bodies), model_(model) {}
+
+  void add() {
+    for (const ScenePin& pin : scene_.pins) add_pin(pin);
+    for (const SceneForce& f : scene_.forces)
+      model_.loads.push_back({f.name,
+                              select(f.body, f.select, "'select' of [force." + f.name + "]"),
+                              f.force, f.start, f.end, f.ramp});
+    for (const SceneProbe& p : scene_.probes)
+      model_.probes.push_back(
+          {p.name, select(p.body, p.select, "'select' of [probe." + p.name + "]")});
+    for (const SceneAttachment& a : scene_.attachments) {
+      if (a.point)
+        attach_to_point(a);
+      else
+        attach_to_body(a);
+    }
+  }
+
+ private:
+  // Node ids of the Model.
+  std::vector<Index> select(const std::string& body, const Selection& selection,
+                            const std::string& what) const {
+    const auto placed = std::find_if(bodies_.begin(), bodies_.end(),
+                                     [&](const PlacedBody& b) { return b.body->name == body; });
+    std::vector<Index> nodes = select_nodes(*placed, selection, what);
+    for (Index& node : nodes) node += placed->first_node;
+    return nodes;
+  }
+
+  void add_pin(const ScenePin& pin) {
+    Pin out{pin.name, select(pin.body, pin.select, "'select' of [pin." + pin.name + "]"), pin.path};
+    if (!pin.pivot_given) out.path.pivot = mean(model_, out.nodes);
+    holder_.resize(model_.rest_position.size(), nullptr);
+    for (const Index node : out.nodes) {
+      const ScenePin*& holder = holder_[static_cast<std::size_t>(node)];
+      if (holder != nullptr)
+        throw Error(ErrorKind::input,
+                    fmt::format("{} is held by two pins, '{}' and '{}'", model_.node_name(node),
+                                holder->name, pin.name),
+                    "make their selections disjoint", pin.select.where);
+      holder = &pin;
+    }
+    model_.pins.push_back(std::move(out));
+  }
+
+  void attach_to_point(const SceneAttachment& a) {
+    const std::vector<Index> nodes =
+        select(a.body, a.select, "'select' of [attachment." + a.name + "]");
+    Path path = a.path;
+    if (!a.pivot_given) path.pivot = *a.point;
+    const Index anchor = add_anchor(model_, a.name, *a.point, path);
+    for (const Index node : nodes) add_spring(a, node, anchor);
+  }
+
+  void attach_to_body(const SceneAttachment& a) {
+    const std::vector<Index> nodes =
+        select(a.body, a.select, "'select' of [attachment." + a.name + "]");
+    Selection surface;
+    surface.surface = true;
+    surface.where = a.where;
+    std::vector<Index> targets = select(a.to_body, a.to_select.value_or(surface),
+                                        "'to_select' of [attachment." + a.name + "]");
+    std::sort(targets.begin(), targets.end(), [&](Index i, Index j) {
+      return std::pair(position(model_, i).x(), i) < std::pair(position(model_, j).x(), j);
+    });
+    for (const Index node : nodes)
+      add_spring(a, node, nearest_target(targets, position(model_, node)));
+  }
+
+  // `targets` are sorted by x: from the place of the point's x outwards, until x alone is too far.
+  Index nearest_target(const std::vector<Index>& targets, const Vec3& point) const {
+    const auto start =
+        std::lower_bound(targets.begin(), targets.end(), point.x(),
+                         [&](Index node, double x) { return position(model_, node).x() < x; });
+    Index best = -1;
+    double best_distance = std::numeric_limits<double>::infinity();
+    const auto closer = [&](Index node) {  // false: no node further out can be nearer
+      const Vec3 d = position(model_, node) - point;
+      const double distance = d.squaredNorm();
+      if (std::pair(distance, node) < std::pair(best_distance, best)) {
+        best = node;
+        best_distance = distance;
+      }
+      return d.x() * d.x() <= best_distance;
+    };
+    for (auto up = start; up != targets.end() && closer(*up); ++up) {
+    }
+    for (auto down = start; down != targets.begin() && closer(*(down - 1)); --down) {
+    }
+    return best;
+  }
+
+  void add_spring(const SceneAttachment& a, Index from, Index to) {
+    const double distance = (position(model_, to) - position(model_, from)).norm();
+    add_attachment(model_, from, to, a.stiffness, a.damping, a.rest_length.value_or(distance));
+  }
+
+  const Scene& scene_;
+  const std::vector<PlacedBody>& bodies_;
+  Model& model_;
+  std::vector<const ScenePin*> holder_;  // (nodes)
+};
+
+}  // namespace
+
+Model build_model(const Scene& scene, BuildReport* report) {
+  Model model;
+  const std::vector<PlacedBody> bodies = add_bodies(scene, model, report);
+  model.gravity = scene.gravity;
+  model.limit_sweeps = scene.limit_sweeps;
+  model.limit_tolerance = scene.limit_tolerance;
+  if (const auto& g = scene.ground)
+    model.ground = Ground{g->point, g->normal, g->restitution, g->friction};
+  Parts(scene, bodies, model).add();
+  finish(model);
+  return model;
+}
+
+}  // namespace sinew

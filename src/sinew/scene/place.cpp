@@ -1,0 +1,149 @@
+#include "sinew/scene/place.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "sinew/io/mesh_io.h"
+#include "sinew/mesh/doctor.h"
+#include "sinew/mesh/shapes.h"
+#include "sinew/mesh/size.h"
+#include "sinew/scene/keys.h"
+
+namespace sinew {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+// Tets smaller than this have no mass to speak of [m3].
+constexpr double kSmallestTet = 1e-60;
+constexpr double kLargestPlace = 1e9;  // of a coordinate [m]
+
+// The path as a user would write it: from the current folder where it lies below that.
+fs::path shown(const fs::path& path) {
+  std::error_code failed;
+  const fs::path here = fs::current_path(failed);
+  const fs::path relative = path.lexically_normal().lexically_relative(here);
+  return failed || relative.empty() || *relative.begin() == ".." ? path : relative;
+}
+
+[[noreturn]] void refuse_missing(const SceneBody& body, const fs::path& path) {
+  std::vector<std::string> names;
+  std::error_code failed;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path.parent_path(), failed))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  throw Error(ErrorKind::input,
+              fmt::format("the mesh file of [body.{}] is not there: {}{}", body.name,
+                          shown(path).string(), did_you_mean(path.filename().string(), names)),
+              "mesh paths start from the scene file's folder", body.mesh_where);
+}
+
+TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source) {
+  const fs::path path = fs::path(scene.base) / body.mesh;
+  std::error_code failed;
+  if (!fs::exists(path, failed)) refuse_missing(body, path);
+  source = shown(path).string();
+  return io::read_mesh(source);
+}
+
+TetMesh make_shape(const SceneBody& body) {
+  try {
+    if (body.shape == "beam") return beam(body.size, body.cells);
+    if (body.shape == "box") return box(body.size, body.cells);
+    if (body.shape == "sphere") return sphere(body.radius, body.resolution);
+    if (body.shape == "ellipsoid") return ellipsoid(body.radii, body.resolution);
+    if (body.shape == "cylinder") return cylinder(body.radius, body.height, body.resolution);
+  } catch (const Error& error) {
+    throw Error(error.kind(), error.message(), error.remedy(), body.mesh_where);
+  }
+  throw Error(ErrorKind::internal, "unknown shape " + body.shape);
+}
+
+// Diagnoses, repairs, and notes what was found.
+void make_sound(PlacedBody& placed) {
+  const auto in_file = static_cast<std::size_t>(placed.mesh.node_count());
+  const bool is_file = !placed.body->mesh.empty();
+  RepairReport report;
+  try {
+    report = repair(placed.mesh, is_file ? placed.source : std::string());
+  } catch (const Error& error) {
+    if (is_file) throw;
+    throw Error(error.kind(), error.message(), error.remedy(), placed.body->mesh_where);
+  }
+  for (const Problem& problem : report.found.problems)
+    placed.warnings.push_back(problem.severity == Severity::repairable ? "repaired: " + problem.text
+                                                                       : problem.text);
+  placed.node_of_file.assign(in_file, -1);
+  for (std::size_t i = 0; i < report.original_node.size(); ++i)
+    placed.node_of_file[static_cast<std::size_t>(report.original_node[i])] = static_cast<Index>(i);
+}
+
+// Of the volume, in the mesh's unit.
+Vec3 centroid(const TetMesh& mesh) {
+  Vec3 moment = Vec3::Zero();
+  double volume = 0.0;
+  for (const Tet& t : mesh.tets) {
+    const double v = signed_volume(mesh.nodes, t);
+    Vec3 sum = Vec3::Zero();
+    for (const Index corner : t) sum += mesh.nodes[static_cast<std::size_t>(corner)];
+    moment += v / 4.0 * sum;
+    volume += v;
+  }
+  return moment / volume;
+}
+
+void move_to_world(PlacedBody& placed) {
+  const SceneBody& body = *placed.body;
+  const Vec3 origin = body.center ? Vec3(body.scale * centroid(placed.mesh)) : Vec3(Vec3::Zero());
+  const Mat3 rotation = body.rotation.toRotationMatrix();
+  for (Vec3& x : placed.mesh.nodes) x = body.position + rotation * (body.scale * x - origin);
+  placed.low = placed.high = placed.mesh.nodes.front();
+  for (const Vec3& x : placed.mesh.nodes) {
+    placed.low = placed.low.cwiseMin(x);
+    placed.high = placed.high.cwiseMax(x);
+  }
+}
+
+double checked_volume(const PlacedBody& placed) {
+  double volume = 0.0;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Tet& t : placed.mesh.tets) {
+    const double v = signed_volume(placed.mesh.nodes, t);
+    volume += v;
+    least = std::min(least, v);
+  }
+  const double largest =
+      std::max(placed.low.cwiseAbs().maxCoeff(), placed.high.cwiseAbs().maxCoeff());
+  if (!(least > kSmallestTet) || !(largest < kLargestPlace))
+    throw Error(
+        ErrorKind::input,
+        fmt::format("[body.{}] cannot be simulated where it is placed: its smallest tet has "
+                    "{:.3g} m3, its largest coordinate is {:.3g} m",
+                    placed.body->name, least, largest),
+        "check scale, size and position; they are in metres", placed.body->where);
+  return volume;
+}
+
+}  // namespace
+
+PlacedBody place(const Scene& scene, const SceneBody& body) {
+  PlacedBody placed;
+  placed.body = &body;
+  if (body.shape.empty()) {
+    placed.mesh = read_file(scene, body, placed.source);
+  } else {
+    placed.source = "shape " + body.shape;
+    placed.mesh = make_shape(body);
+  }
+  make_sound(placed);
+  move_to_world(placed);
+  const double volume = checked_volume(placed);
+  if (const auto warning = size_warning(volume, placed.high - placed.low, body.scale))
+    placed.warnings.push_back(*warning);
+  return placed;
+}
+
+}  // namespace sinew

@@ -1,0 +1,29 @@
+// One body of a scene with its mesh read or made, repaired, scaled and placed in the world.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "sinew/mesh/tet_mesh.h"
+#include "sinew/scene/scene.h"
+
+namespace sinew {
+
+struct PlacedBody {
+  const SceneBody* body = nullptr;
+  std::string source;               // the mesh file, or "shape beam"
+  TetMesh mesh;                     // sound, in the world [m]
+  std::vector<Index> node_of_file;  // mesh node (nodes of the file); -1: in no tet, left out
+  Vec3 low = Vec3::Zero();          // bounding box [m]
+  Vec3 high = Vec3::Zero();
+  Index first_node = 0;  // of the body in the Model
+  std::vector<std::string> warnings;
+
+  double diagonal() const { return (high - low).norm(); }
+};
+
+// x = position + R (scale X - origin). Error(input) where the mesh is missing, cannot be used
+// (mesh/doctor.h), or is placed so large, so small or so far off that its tets lose their volume.
+PlacedBody place(const Scene& scene, const SceneBody& body);
+
+}  // namespace sinew
