@@ -1,0 +1,87 @@
+#include "sinew/io/base64.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace sinew::io {
+namespace {
+
+constexpr std::string_view alphabet =
+    "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+constexpr std::uint8_t not_base64 = 255;
+
+constexpr std::array<std::uint8_t, 256> make_values() {
+  std::array<std::uint8_t, 256> values{};
+  values.fill(not_base64);
+  for (std::size_t i = 0; i < alphabet.size(); ++i) {
+    values[static_cast<unsigned char>(alphabet[i])] = static_cast<std::uint8_t>(i);
+  }
+  return values;
+}
+constexpr std::array<std::uint8_t, 256> values = make_values();
+
+bool is_blank(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+}  // namespace
+
+std::string encode_base64(std::string_view bytes) {
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t length = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8 | (k < length ? static_cast<unsigned char>(bytes[i + k]) : 0U);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= length ? alphabet[group >> (18 - 6 * k) & 63U] : '=';
+    }
+  }
+  return text;
+}
+
+std::size_t Base64Reader::remaining() const {
+  return pending_.size() + (text_.size() - at_ + 3) / 4 * 3;
+}
+
+bool Base64Reader::decode_group() {
+  std::uint32_t group = 0;
+  std::size_t digits = 0;
+  std::size_t padding = 0;
+  while (digits + padding < 4) {
+    while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+    if (at_ == text_.size()) return false;
+    const char c = text_[at_];
+    const std::uint8_t value = values[static_cast<unsigned char>(c)];
+    if (c == '=' && digits >= 2) {
+      ++padding;
+    } else if (value != not_base64 && padding == 0) {
+      ++digits;
+    } else {
+      bad_at_ = at_;
+      return false;
+    }
+    group = group << 6 | (c == '=' ? 0U : value);
+    ++at_;
+  }
+  for (std::size_t k = 0; k + 1 < digits; ++k) {
+    pending_ += static_cast<char>(static_cast<unsigned char>(group >> (16 - 8 * k) & 255U));
+  }
+  return true;
+}
+
+bool Base64Reader::read(std::size_t count, std::string& bytes) {
+  while (count > 0) {
+    if (pending_.empty() && !decode_group()) return false;
+    const std::size_t taken = std::min(count, pending_.size());
+    bytes.append(pending_, 0, taken);
+    pending_.erase(0, taken);
+    count -= taken;
+  }
+  return true;
+}
+
+}  // namespace sinew::io

@@ -1,0 +1,25 @@
+// TetGen .node, .ele and .face (H. Si, TetGen manual, section "File formats"): ids from 0 or 1,
+// comments from # to the end of the line, optional attributes and boundary markers.
+// A tet's label is its region, the last attribute; a node's and a face's label is its boundary
+// marker.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "sinew/mesh/tet_mesh.h"
+
+namespace sinew::io {
+
+// The texts of the files that belong together; an empty face text: no such file. Names: for errors.
+struct TetgenText {
+  std::string node, ele, face;
+  std::string node_name, ele_name, face_name;
+};
+
+// Error (input) for everything that is not such a pair, or holds no tetrahedra.
+TetMesh parse_tetgen(const TetgenText& files);
+// Ids from 1. `face` is empty where the mesh has no faces.
+TetgenText format_tetgen(const TetMesh& mesh);
+
+}  // namespace sinew::io

@@ -1,0 +1,102 @@
+// A tokeniser over a whole file in memory: words and numbers divided by blanks, with the line and
+// column of each. Every reader of this room is built on it, so every reader's errors name the
+// place, what was expected, what stands there, and what to do.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "sinew/base/error.h"
+
+namespace sinew::io {
+
+// What the reader is about to read, for its errors: "x of vertex 12", "the number of vertices".
+// A plain value, put into words only when something is wrong.
+struct Wanted {
+  std::string_view value;    // "x"
+  std::string_view of = {};  // "vertex"
+  std::int64_t number = -1;  // which of them; negative: not numbered
+};
+
+class TextReader {
+ public:
+  // text must outlive the reader. comment: the character that starts a comment up to the end of
+  // its line, 0 for none. first_line: the number of the line that text starts with.
+  TextReader(std::string_view text, std::string file, char comment, int first_line = 1);
+
+  // Where the reader is, for its errors: a name ("section Vertices") and how one entry is
+  // written ("x y z label"). Both must be literals or outlive the reader.
+  void set_part(std::string_view part, std::string_view layout);
+
+  bool at_end();            // only blanks and comments are left
+  bool at_line_end();       // no value is left on this line
+  std::string_view peek();  // the next word, not consumed; empty at the end
+
+  // Next value, or an Error. `real` takes what std::from_chars takes for a double, nan and inf
+  // included (the mesh doctor refuses those, with the node's number).
+  std::string_view word(const Wanted& wanted);
+  double real(const Wanted& wanted);
+  std::int64_t integer(const Wanted& wanted);
+  std::int64_t integer(const Wanted& wanted, std::int64_t low, std::int64_t high);
+  int label(const Wanted& wanted);  // any 32-bit whole number
+  // A number of records that must fit in the rest of the text, each of at least so many values
+  // (a value and its blank take two characters). Checked here, before anything is allocated.
+  std::size_t count(const Wanted& wanted, std::size_t values_per_record);
+
+  void skip_values(std::size_t count, const Wanted& wanted);
+  std::string_view line_rest();  // up to the line break, which is consumed
+
+  // Raw bytes. After `end_line`, which consumes one line break, a binary block starts.
+  void end_line(const Wanted& wanted);
+  std::string_view take(std::size_t bytes, const Wanted& wanted);
+  std::size_t offset() const { return static_cast<std::size_t>(at_ - text_.data()); }
+  std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
+  // Moves to the first place of what at or after here; false if there is none.
+  bool find(std::string_view what);
+  // Lines mean nothing in a file with binary blocks: errors then name the byte.
+  void set_binary() { binary_ = true; }
+  bool binary() const { return binary_; }
+
+  const std::string& file() const { return file_; }
+  int line() const { return line_; }  // of the next character
+
+  // Errors that point at the last value read.
+  [[noreturn]] void fail(std::string message, std::string remedy) const;
+  // "expected WANTED (a whole number), found "abc"".
+  [[noreturn]] void fail_expected(const Wanted& wanted, std::string_view kind,
+                                  std::string_view found) const;
+
+ private:
+  void skip_blanks();
+  bool ends_word(const char* p) const;
+  void start_value(const Wanted& wanted);
+  std::string_view rest_of_word() const;
+  [[noreturn]] void fail_end(const Wanted& wanted) const;
+
+  std::string_view text_;
+  std::string file_;
+  char comment_;
+  bool binary_ = false;
+  const char* at_;  // next character
+  const char* end_;
+  const char* line_start_;  // first character of the line of at_
+  int line_;
+  const char* value_ = nullptr;  // the last value, for errors
+  const char* value_line_start_ = nullptr;
+  int value_line_ = 0;
+  std::string_view part_;
+  std::string_view layout_;
+};
+
+// "x of vertex 12".
+std::string to_text(const Wanted& wanted);
+// A word of a file, quoted for a message: bytes that do not print become \xNN, long ones are cut.
+std::string quoted(std::string_view word);
+// The candidate that word was probably meant to be (a typing slip or two away, case ignored), or
+// empty.
+std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
+
+}  // namespace sinew::io
