@@ -185,7 +185,7 @@ struct Icosahedron {
 TetMesh ball(const Vec3& radii, Index n) {
   const Icosahedron ico;
   TetMesh mesh;
-  mesh.nodes.resize(uz(Icosahedron::shell_start(n + 1)));
+  mesh.nodes.assign(uz(Icosahedron::shell_start(n + 1)), Vec3::Zero());
   mesh.tets.reserve(20 * uz(n) * uz(n) * uz(n));
   for (std::size_t f = 0; f < ico.faces.size(); ++f) {
     const Triangle& v = ico.faces[f];

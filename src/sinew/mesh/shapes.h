@@ -25,7 +25,7 @@ TetMesh box(const Vec3& size, const std::array<Index, 3>& cells);
 
 // A ball around the origin: an icosahedron cut into its 20 sectors, each divided into resolution^3
 // tets, its shells moved out to spheres. 20 resolution^3 tets, 20 resolution^2 surface triangles,
-// edges of about radius / resolution. Smallest dihedral angle: at least 36 degrees. The volume
+// edges of 0.9 to 2 radius / resolution. Smallest dihedral angle: at least 36 degrees. The volume
 // converges to the ball's with the square of the resolution.
 TetMesh sphere(double radius, Index resolution);
 
@@ -34,7 +34,7 @@ TetMesh ellipsoid(const Vec3& radii, Index resolution);
 
 // Around the z axis, centred at the origin: layers of prisms on a disc of 6 resolution^2 triangles
 // in `resolution` rings, three tets a prism. The layers are as high as a ring is wide, to the
-// nearest whole number. Smallest dihedral angle: at least 30 degrees where length is a multiple of
+// nearest whole number. Smallest dihedral angle: at least 34 degrees where length is a multiple of
 // radius / resolution. The volume converges with the square of the resolution.
 TetMesh cylinder(double radius, double length, Index resolution);
 

@@ -1,0 +1,192 @@
+#include "sinew/mesh/shapes.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <numbers>
+
+#include "sinew/base/error.h"
+#include "sinew/mesh/doctor.h"
+#include "sinew/mesh/edges.h"
+#include "sinew/mesh/quality.h"
+
+namespace sinew {
+namespace {
+
+Quality quality_of(const TetMesh& mesh) {
+  return measure_quality(mesh, build_edges(mesh.tets, mesh.node_count()));
+}
+
+void expect_sound(const TetMesh& mesh) {
+  for (const Problem& problem : diagnose(mesh).problems) ADD_FAILURE() << problem.text;
+}
+
+std::string message_of(const std::function<void()>& call) {
+  try {
+    call();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::input);
+    EXPECT_FALSE(error.remedy().empty());
+    return error.message();
+  }
+  return "no error";
+}
+
+TEST(Beam, BenchmarkWorkloads) {
+  const std::pair<Index, Index> counts[] = {{4, 1'280}, {8, 10'240}, {17, 98'260}, {37, 1'013'060}};
+  for (const auto& [k, tets] : counts) {
+    const TetMesh mesh = beam({0.1, 0.1, 0.4}, {k, k, 4 * k});
+    EXPECT_EQ(mesh.tet_count(), tets);
+    EXPECT_EQ(mesh.node_count(), (k + 1) * (k + 1) * (4 * k + 1));
+    double volume = 0, smallest = 1;
+    for (const Tet& tet : mesh.tets) {
+      const double v = signed_volume(mesh.nodes, tet);
+      volume += v;
+      smallest = std::min(smallest, v);
+    }
+    EXPECT_NEAR(volume, 0.004, 1e-15 * tets);
+    const double h = 0.1 / k;
+    EXPECT_NEAR(smallest, h * h * h / 6, 1e-6 * h * h * h);
+  }
+}
+
+TEST(Beam, NodesAreWhereTheWorkloadSays) {
+  const Index k = 5;
+  const TetMesh mesh = beam({0.1, 0.1, 0.4}, {k, k, 4 * k});
+  const double h = 0.1 / k;
+  for (Index l = 0; l <= 4 * k; ++l) {
+    for (Index j = 0; j <= k; ++j) {
+      for (Index i = 0; i <= k; ++i) {
+        const Vec3& x = mesh.nodes[uz((l * (k + 1) + j) * (k + 1) + i)];
+        EXPECT_EQ(x, Vec3(i * h - 0.05, j * h - 0.05, l * h)) << i << ' ' << j << ' ' << l;
+      }
+    }
+  }
+}
+
+TEST(Beam, TetsOfTheFirstTwoCubes) {
+  const TetMesh mesh = beam({2, 1, 1}, {2, 1, 1});
+  // Nodes of the cubes: 0 1 3 4 6 7 9 10 and, mirrored in x, 2 1 5 4 8 7 11 10.
+  const std::vector<Tet> expected = {
+      {0, 1, 4, 7}, {0, 4, 3, 9},  {0, 7, 9, 6},  {4, 9, 7, 10},  {0, 4, 9, 7},
+      {2, 1, 7, 4}, {2, 4, 10, 5}, {2, 7, 8, 10}, {4, 10, 11, 7}, {2, 4, 7, 10},
+  };
+  EXPECT_EQ(mesh.tets, expected);
+}
+
+TEST(Beam, ConformsForAnyCells) {
+  expect_sound(beam({0.3, 0.2, 0.5}, {3, 2, 5}));
+  expect_sound(beam({0.1, 0.1, 0.1}, {1, 1, 1}));
+  EXPECT_NEAR(quality_of(beam({1, 1, 4}, {2, 2, 8})).dihedral_angle.min, 54.7356, 1e-3);
+}
+
+TEST(Box, FillsItsSize) {
+  const TetMesh mesh = box({0.3, 0.2, 0.5}, {3, 2, 5});
+  expect_sound(mesh);
+  EXPECT_EQ(mesh.tet_count(), 6 * 30);
+  const Quality quality = quality_of(mesh);
+  EXPECT_NEAR(quality.volume, 0.03, 1e-15);
+  EXPECT_NEAR(quality.dihedral_angle.min, 45, 1e-9);
+  EXPECT_TRUE(quality.box_min.isApprox(Vec3(-0.15, -0.1, -0.25)));
+  EXPECT_TRUE(quality.box_max.isApprox(Vec3(0.15, 0.1, 0.25)));
+}
+
+TEST(Sphere, CountsAndQuality) {
+  for (const Index n : {1, 2, 3, 5, 12}) {
+    const TetMesh mesh = sphere(0.05, n);
+    expect_sound(mesh);
+    EXPECT_EQ(mesh.tet_count(), 20 * n * n * n);
+    EXPECT_EQ(mesh.nodes[0], Vec3::Zero());
+    const Quality quality = quality_of(mesh);
+    EXPECT_GE(quality.dihedral_angle.min, 36) << n;
+    EXPECT_LE(quality.dihedral_angle.max, 130) << n;
+    EXPECT_GE(quality.edge_length.min, 0.9 * 0.05 / n) << n;
+    EXPECT_LE(quality.edge_length.max, 2 * 0.05 / n) << n;
+  }
+}
+
+TEST(Sphere, VolumeConvergesWithTheSquareOfTheResolution) {
+  const double exact = 4.0 / 3.0 * std::numbers::pi;
+  const double error_8 = 1 - quality_of(sphere(1, 8)).volume / exact;
+  const double error_16 = 1 - quality_of(sphere(1, 16)).volume / exact;
+  EXPECT_LT(error_8, 0.009);
+  EXPECT_NEAR(std::log2(error_8 / error_16), 2, 0.05);
+}
+
+TEST(Ellipsoid, IsTheScaledSphere) {
+  const TetMesh mesh = ellipsoid({0.03, 0.02, 0.01}, 6);
+  expect_sound(mesh);
+  EXPECT_NEAR(quality_of(mesh).volume / quality_of(sphere(1, 6)).volume, 6e-6, 1e-18);
+  for (const Vec3& x : mesh.nodes) {
+    EXPECT_LE(x.cwiseQuotient(Vec3(0.03, 0.02, 0.01)).norm(), 1 + 1e-12);
+  }
+}
+
+TEST(Cylinder, CountsAndQuality) {
+  for (const Index n : {1, 2, 3, 5, 12}) {
+    const TetMesh mesh = cylinder(0.05, 0.15, n);
+    expect_sound(mesh);
+    EXPECT_EQ(mesh.tet_count(), 18 * n * n * 3 * n);
+    const Quality quality = quality_of(mesh);
+    EXPECT_GE(quality.dihedral_angle.min, 34) << n;
+    EXPECT_LE(quality.dihedral_angle.max, 126) << n;
+    EXPECT_NEAR(quality.box_max.z(), 0.075, 1e-15);
+    EXPECT_NEAR(quality.box_min.z(), -0.075, 1e-15);
+  }
+}
+
+TEST(Cylinder, VolumeConvergesWithTheSquareOfTheResolution) {
+  const double exact = 2 * std::numbers::pi;
+  const double error_4 = 1 - quality_of(cylinder(1, 2, 4)).volume / exact;
+  const double error_8 = 1 - quality_of(cylinder(1, 2, 8)).volume / exact;
+  EXPECT_LT(error_8, 0.003);
+  EXPECT_NEAR(std::log2(error_4 / error_8), 2, 0.02);
+}
+
+TEST(Cylinder, ShorterThanARingIsOneLayer) {
+  const TetMesh mesh = cylinder(1, 0.01, 3);
+  expect_sound(mesh);
+  EXPECT_EQ(mesh.tet_count(), 18 * 9);
+}
+
+TEST(Shapes, WrongArguments) {
+  EXPECT_EQ(message_of([] {
+              beam({0.1, 0, 0.4}, {1, 1, 1});
+            }),
+            "beam: size[1] is 0, expected a length from 1e-6 to 1e6 m");
+  EXPECT_EQ(message_of([] {
+              box({0.1, 0.1, std::nan("")}, {1, 1, 1});
+            }),
+            "box: size[2] is nan, expected a length from 1e-6 to 1e6 m");
+  EXPECT_EQ(message_of([] {
+              beam({1, 1, 1}, {1, 1, -4});
+            }),
+            "beam: cells[2] is -4, expected 1 or more");
+  EXPECT_EQ(message_of([] { sphere(-1, 3); }),
+            "sphere: radius is -1, expected a length from 1e-6 to 1e6 m");
+  EXPECT_EQ(message_of([] {
+              ellipsoid({1, 1, 1e300}, 3);
+            }),
+            "ellipsoid: radii[2] is 1e+300, expected a length from 1e-6 to 1e6 m");
+  EXPECT_EQ(message_of([] { cylinder(1, 1, 0); }), "cylinder: resolution is 0, expected 1 or more");
+}
+
+TEST(Shapes, AbsurdSizesAreRefusedAtOnce) {
+  constexpr Index kLargest = std::numeric_limits<Index>::max();
+  EXPECT_EQ(message_of([] {
+              box({1, 1, 1}, {1000, 1000, 1000});
+            }),
+            "box: cells asks for 6e+03 million tets, expected 20 million or fewer");
+  EXPECT_EQ(message_of([] {
+              beam({1, 1, 1}, {kLargest, kLargest, kLargest});
+            }),
+            "beam: cells asks for 4.95e+22 million tets, expected 20 million or fewer");
+  EXPECT_EQ(message_of([] { sphere(1, 101); }),
+            "sphere: resolution asks for 20.6 million tets, expected 20 million or fewer");
+  EXPECT_EQ(message_of([] { cylinder(1e-6, 1e6, kLargest); }),
+            "cylinder: resolution asks for 1.78e+35 million tets, expected 20 million or fewer");
+}
+
+}  // namespace
+}  // namespace sinew
