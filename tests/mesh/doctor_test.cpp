@@ -127,8 +127,11 @@ TEST(Doctor, NonManifoldFace) {
   TetMesh mesh = two_tets();
   mesh.nodes.emplace_back(2, 2, 2);
   mesh.tets.push_back({5, 1, 3, 2});
-  expect_problem(mesh, ProblemKind::non_manifold_face, Severity::fatal,
-                 "1 non-manifold face (1-2-3): shared by more than two tets");
+  const Diagnosis diagnosis = diagnose(mesh);
+  const Problem& problem = diagnosis.problems.front();
+  EXPECT_EQ(problem.kind, ProblemKind::non_manifold_face);
+  EXPECT_EQ(problem.severity, Severity::fatal);
+  EXPECT_EQ(problem.text, "1 non-manifold face (1-2-3): shared by more than two tets");
 }
 
 TEST(Doctor, InvertedAndTheConventionOfAFile) {

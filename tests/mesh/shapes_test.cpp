@@ -70,7 +70,7 @@ TEST(Beam, TetsOfTheFirstTwoCubes) {
   // Nodes of the cubes: 0 1 3 4 6 7 9 10 and, mirrored in x, 2 1 5 4 8 7 11 10.
   const std::vector<Tet> expected = {
       {0, 1, 4, 7}, {0, 4, 3, 9},  {0, 7, 9, 6},  {4, 9, 7, 10},  {0, 4, 9, 7},
-      {2, 1, 7, 4}, {2, 4, 10, 5}, {2, 7, 8, 10}, {4, 10, 11, 7}, {2, 4, 7, 10},
+      {2, 1, 7, 4}, {2, 4, 11, 5}, {2, 7, 8, 11}, {4, 11, 10, 7}, {2, 4, 7, 11},
   };
   EXPECT_EQ(mesh.tets, expected);
 }
