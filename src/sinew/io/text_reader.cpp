@@ -40,16 +40,21 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
+int column_of(const char* place, const char* line_start) {
+  return static_cast<int>(
+      std::min<std::ptrdiff_t>(place - line_start + 1, std::numeric_limits<int>::max()));
+}
+
 }  // namespace
 
-TextReader::TextReader(std::string_view text, std::string file, char comment, int first_line)
+TextReader::TextReader(std::string_view text, std::string file, char comment)
     : text_(text),
       file_(std::move(file)),
       comment_(comment),
       at_(text.data()),
       end_(text.data() + text.size()),
       line_start_(at_),
-      line_(first_line) {
+      line_(1) {
   constexpr std::string_view utf8_mark = "\xEF\xBB\xBF";
   if (text.starts_with(utf8_mark)) at_ += utf8_mark.size();
 }
@@ -183,6 +188,9 @@ void TextReader::skip_values(std::size_t count, const Wanted& wanted) {
 }
 
 std::string_view TextReader::line_rest() {
+  value_ = at_;
+  value_line_ = line_;
+  value_line_start_ = line_start_;
   const void* found = std::memchr(at_, '\n', remaining());
   const char* stop = found == nullptr ? end_ : static_cast<const char*>(found);
   std::string_view rest(at_, static_cast<std::size_t>(stop - at_));
@@ -197,11 +205,8 @@ std::string_view TextReader::line_rest() {
 }
 
 void TextReader::end_line(const Wanted& wanted) {
-  const bool clean = at_line_end();
-  value_ = at_;
-  value_line_ = line_;
-  value_line_start_ = line_start_;
-  if (!clean) fail_expected(wanted, "after a line break", rest_of_word());
+  if (!at_line_end()) start_value(wanted);
+  if (!at_line_end()) fail_expected(wanted, "after a line break", rest_of_word());
   line_rest();
 }
 
@@ -216,14 +221,18 @@ std::string_view TextReader::take(std::size_t bytes, const Wanted& wanted) {
 bool TextReader::find(std::string_view what) {
   const std::size_t place = text_.find(what, offset());
   if (place == text_.npos) return false;
-  const char* stop = text_.data() + place;
-  for (; at_ != stop; ++at_) {
+  go_to(place);
+  return true;
+}
+
+void TextReader::go_to(std::size_t place) {
+  for (const char* stop = text_.data() + place; at_ != stop; ++at_) {
     if (*at_ == '\n') {
       ++line_;
       line_start_ = at_ + 1;
     }
   }
-  return true;
+  value_ = nullptr;
 }
 
 void TextReader::fail(std::string message, std::string remedy) const {
@@ -233,10 +242,10 @@ void TextReader::fail(std::string message, std::string remedy) const {
     message += fmt::format(" (at byte {})", place - text_.data());
   } else if (value_ == nullptr) {
     where.line = line_;
+    where.column = column_of(at_, line_start_);
   } else {
     where.line = value_line_;
-    where.column = static_cast<int>(
-        std::min<std::ptrdiff_t>(value_ - value_line_start_ + 1, std::numeric_limits<int>::max()));
+    where.column = column_of(value_, value_line_start_);
   }
   throw Error(ErrorKind::input, std::move(message), std::move(remedy), std::move(where));
 }

@@ -24,8 +24,8 @@ struct Wanted {
 class TextReader {
  public:
   // text must outlive the reader. comment: the character that starts a comment up to the end of
-  // its line, 0 for none. first_line: the number of the line that text starts with.
-  TextReader(std::string_view text, std::string file, char comment, int first_line = 1);
+  // its line, 0 for none.
+  TextReader(std::string_view text, std::string file, char comment);
 
   // Where the reader is, for its errors: a name ("section Vertices") and how one entry is
   // written ("x y z label"). Both must be literals or outlive the reader.
@@ -56,12 +56,13 @@ class TextReader {
   std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
   // Moves to the first place of what at or after here; false if there is none.
   bool find(std::string_view what);
+  // Moves on to a place at or after here; errors then point there until a value is read.
+  void go_to(std::size_t place);
   // Lines mean nothing in a file with binary blocks: errors then name the byte.
   void set_binary() { binary_ = true; }
   bool binary() const { return binary_; }
 
   const std::string& file() const { return file_; }
-  int line() const { return line_; }  // of the next character
 
   // Errors that point at the last value read.
   [[noreturn]] void fail(std::string message, std::string remedy) const;

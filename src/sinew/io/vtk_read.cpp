@@ -2,61 +2,17 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <limits>
 #include <utility>
 
 #include "sinew/io/cells.h"
-#include "sinew/io/value_reader.h"
 #include "sinew/io/vtk.h"
 #include "sinew/io/vtk_grid.h"
+#include "sinew/io/vtk_values.h"
 
 namespace sinew::io {
 namespace {
-
-enum class Scalar { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64, bit };
-
-struct ScalarName {
-  std::string_view name;
-  Scalar type;
-};
-// long is 8 bytes as on the 64-bit systems that write it; vtkIdType is written as int.
-constexpr std::array scalar_names = {
-    ScalarName{"bit", Scalar::bit},           ScalarName{"char", Scalar::i8},
-    ScalarName{"signed_char", Scalar::i8},    ScalarName{"unsigned_char", Scalar::u8},
-    ScalarName{"short", Scalar::i16},         ScalarName{"unsigned_short", Scalar::u16},
-    ScalarName{"int", Scalar::i32},           ScalarName{"unsigned_int", Scalar::u32},
-    ScalarName{"long", Scalar::i64},          ScalarName{"unsigned_long", Scalar::u64},
-    ScalarName{"vtkidtype", Scalar::i32},     ScalarName{"vtktypeint64", Scalar::i64},
-    ScalarName{"vtktypeuint64", Scalar::u64}, ScalarName{"float", Scalar::f32},
-    ScalarName{"double", Scalar::f64},
-};
-
-std::size_t scalar_bytes(Scalar type) {
-  switch (type) {
-    case Scalar::i16:
-    case Scalar::u16:
-      return 2;
-    case Scalar::i32:
-    case Scalar::u32:
-    case Scalar::f32:
-      return 4;
-    case Scalar::i64:
-    case Scalar::u64:
-    case Scalar::f64:
-      return 8;
-    default:
-      return 1;
-  }
-}
-
-bool same_word(std::string_view a, std::string_view upper) {
-  return a.size() == upper.size() &&
-         std::equal(a.begin(), a.end(), upper.begin(), [](char x, char y) {
-           return (x >= 'a' && x <= 'z' ? static_cast<char>(x - 'a' + 'A') : x) == y;
-         });
-}
 
 // VTK writes an array's name with %XX for blanks and the like.
 std::string decoded_name(std::string_view name) {
@@ -97,27 +53,12 @@ class VtkParser {
   void field();
   void metadata();
 
-  std::size_t count(const Wanted& wanted) {
-    return static_cast<std::size_t>(
-        text_.integer(wanted, 0, std::numeric_limits<std::int64_t>::max()));
-  }
-  Scalar scalar(const Wanted& wanted);
-  // The data of an array start on the next line.
-  void start_data(const Wanted& wanted) {
-    if (!binary_) return;
-    text_.end_line(wanted);
-    values_.set_binary(std::endian::native == std::endian::little);
-  }
-  double number(Scalar type, const Wanted& wanted);
-  std::int64_t integer(Scalar type, const Wanted& wanted);
   // tuples x components numbers; kept where the array is a label.
   void array(std::string_view name, std::size_t components, std::size_t tuples, Scalar type);
-  void skip_array(std::size_t components, std::size_t tuples, Scalar type);
   std::int64_t point_id(Scalar type, std::size_t cell);
 
   TextReader text_;
-  ValueReader values_;
-  bool binary_ = false;
+  VtkValues values_;
   bool has_offsets_ = false;  // version 5: cells as offsets and connectivity
   bool has_points_ = false;
   bool has_cells_ = false;
@@ -159,11 +100,12 @@ void VtkParser::header() {
   has_offsets_ = version[0] == '5';
   text_.line_rest();  // the title
   const std::string_view form = text_.word({"ASCII or BINARY"});
-  binary_ = same_word(form, "BINARY");
-  if (!binary_ && !same_word(form, "ASCII")) {
+  const bool binary = same_word(form, "BINARY");
+  if (!binary && !same_word(form, "ASCII")) {
     text_.fail(fmt::format("expected ASCII or BINARY, found {}", quoted(form)),
                "line 3 of a VTK file says the form of its numbers, line 2 is a title");
   }
+  values_.set_form(binary);
   const std::string_view dataset = text_.word({"DATASET"});
   if (!same_word(dataset, "DATASET")) {
     text_.fail(fmt::format("expected DATASET, found {}", quoted(dataset)),
@@ -205,69 +147,21 @@ void VtkParser::section(std::string_view keyword) {
   }
 }
 
-Scalar VtkParser::scalar(const Wanted& wanted) {
-  const std::string_view found = text_.word(wanted);
-  for (const ScalarName& known : scalar_names) {
-    if (found.size() == known.name.size() &&
-        std::equal(found.begin(), found.end(), known.name.begin(), [](char a, char b) {
-          return (a >= 'A' && a <= 'Z' ? static_cast<char>(a - 'A' + 'a') : a) == b;
-        })) {
-      return known.type;
-    }
-  }
-  text_.fail(fmt::format("expected {}, found {}", to_text(wanted), quoted(found)),
-             "the types of numbers are float, double, int, long, vtktypeint64 and the like; arrays "
-             "of text cannot be read: save the file without them");
-}
-
-double VtkParser::number(Scalar type, const Wanted& wanted) {
-  if (!values_.binary()) return text_.real(wanted);
-  switch (type) {
-    case Scalar::i8:
-      return values_.value<std::int8_t>(wanted);
-    case Scalar::u8:
-    case Scalar::bit:
-      return values_.value<std::uint8_t>(wanted);
-    case Scalar::i16:
-      return values_.value<std::int16_t>(wanted);
-    case Scalar::u16:
-      return values_.value<std::uint16_t>(wanted);
-    case Scalar::i32:
-      return values_.value<std::int32_t>(wanted);
-    case Scalar::u32:
-      return values_.value<std::uint32_t>(wanted);
-    case Scalar::i64:
-      return static_cast<double>(values_.value<std::int64_t>(wanted));
-    case Scalar::u64:
-      return static_cast<double>(values_.value<std::uint64_t>(wanted));
-    case Scalar::f32:
-      return values_.value<float>(wanted);
-    default:
-      return values_.value<double>(wanted);
-  }
-}
-
-std::int64_t VtkParser::integer(Scalar type, const Wanted& wanted) {
-  if (!values_.binary()) return text_.integer(wanted);
-  return type == Scalar::i64 ? values_.value<std::int64_t>(wanted)
-                             : values_.value<std::int32_t>(wanted);
-}
-
 void VtkParser::points() {
   if (has_points_) text_.fail("a second section POINTS", "join the two sections into one");
   has_points_ = true;
   text_.set_part("a point", "x y z");
   const Wanted wanted{"the number of points"};
-  const std::size_t points = count(wanted);
-  const Scalar type = scalar({"the type of the coordinates"});
-  start_data(wanted);
-  values_.check_room(points, 3, 3 * scalar_bytes(type), wanted);
+  const std::size_t points = values_.count(wanted);
+  const Scalar type = values_.scalar({"the type of the coordinates"});
+  values_.start_data(wanted);
+  values_.check_room(points, 3, type, wanted);
   grid_.points.reserve(points);
   for (std::size_t i = 0; i < points; ++i) {
     const auto id = static_cast<std::int64_t>(i);
-    const double x = number(type, {"x", "point", id});
-    const double y = number(type, {"y", "point", id});
-    const double z = number(type, {"z", "point", id});
+    const double x = values_.number(type, {"x", "point", id});
+    const double y = values_.number(type, {"y", "point", id});
+    const double z = values_.number(type, {"z", "point", id});
     grid_.points.emplace_back(x, y, z);
   }
 }
@@ -277,16 +171,16 @@ void VtkParser::cells() {
   if (!has_points_) text_.fail("CELLS stands before POINTS", "put the section POINTS first");
   has_cells_ = true;
   const Wanted first_wanted{has_offsets_ ? "the number of offsets" : "the number of cells"};
-  const std::size_t first = count(first_wanted);
+  const std::size_t first = values_.count(first_wanted);
   const Wanted size_wanted{"the size of the cell list"};
-  const std::size_t size = count(size_wanted);
+  const std::size_t size = values_.count(size_wanted);
   if (has_offsets_) {
     cells_with_offsets(first, size);
     return;
   }
   text_.set_part("a cell", "number-of-points point point ...");
-  start_data(size_wanted);
-  values_.check_room(size, 1, 4, size_wanted);
+  values_.start_data(size_wanted);
+  values_.check_room(size, 1, Scalar::i32, size_wanted);
   if (first > size) {
     text_.fail(fmt::format("{} cells cannot be listed in {} numbers", first, size),
                "CELLS has two counts: the cells, and all numbers that follow");
@@ -295,7 +189,8 @@ void VtkParser::cells() {
 }
 
 std::int64_t VtkParser::point_id(Scalar type, std::size_t cell) {
-  const std::int64_t id = integer(type, {"a point", "cell", static_cast<std::int64_t>(cell)});
+  const std::int64_t id =
+      values_.integer(type, {"a point", "cell", static_cast<std::int64_t>(cell)});
   if (id < 0 || id >= static_cast<std::int64_t>(grid_.points.size())) {
     text_.fail(fmt::format("cell {} names point {}; the file has points 0 to {}", cell, id,
                            static_cast<std::int64_t>(grid_.points.size()) - 1),
@@ -310,7 +205,7 @@ void VtkParser::cells_with_sizes(std::size_t count, std::size_t size) {
   std::size_t left = size;
   for (std::size_t i = 0; i < count; ++i) {
     const Wanted wanted{"number of points", "cell", static_cast<std::int64_t>(i)};
-    const std::int64_t points = integer(Scalar::i32, wanted);
+    const std::int64_t points = values_.integer(Scalar::i32, wanted);
     const std::size_t room = left - (count - i);
     if (points < 0 || static_cast<std::uint64_t>(points) > room) {
       text_.fail(fmt::format("{} is {}, but the size of the cell list leaves room for {}",
@@ -339,9 +234,9 @@ void VtkParser::cells_with_offsets(std::size_t offsets, std::size_t size) {
                  "since version 5, CELLS holds an OFFSETS and a CONNECTIVITY list; correct the "
                  "version in line 1 if the file is older");
     }
-    const Scalar type = scalar({"the type of the list", keyword});
-    start_data(wanted);
-    values_.check_room(length, 1, scalar_bytes(type), wanted);
+    const Scalar type = values_.scalar({"the type of the list", keyword});
+    values_.start_data(wanted);
+    values_.check_room(length, 1, type, wanted);
     return type;
   };
   const Scalar offset_type = list("OFFSETS", offsets, {"the number of offsets"});
@@ -349,7 +244,7 @@ void VtkParser::cells_with_offsets(std::size_t offsets, std::size_t size) {
   grid_.offsets.reserve(offsets);
   for (std::size_t i = 0; i < offsets; ++i) {
     const Wanted wanted{"offset", "cell", static_cast<std::int64_t>(i)};
-    const std::int64_t offset = integer(offset_type, wanted);
+    const std::int64_t offset = values_.integer(offset_type, wanted);
     if (i == 0 && offset != 0) text_.fail_expected(wanted, "0", std::to_string(offset));
     if (i > 0) grid_.offsets.push_back(offset);
   }
@@ -370,13 +265,13 @@ void VtkParser::cell_types() {
   has_types_ = true;
   text_.set_part("a list of CELL_TYPES", "a number for each cell, 10 is a tetrahedron");
   const Wanted wanted{"the number of cell types"};
-  const std::size_t types = count(wanted);
-  start_data(wanted);
-  values_.check_room(types, 1, 4, wanted);
+  const std::size_t types = values_.count(wanted);
+  values_.start_data(wanted);
+  values_.check_room(types, 1, Scalar::i32, wanted);
   grid_.types.reserve(types);
   for (std::size_t i = 0; i < types; ++i) {
-    grid_.types.push_back(
-        values_.value<std::int32_t>({"type", "cell", static_cast<std::int64_t>(i)}));
+    grid_.types.push_back(static_cast<int>(
+        values_.integer(Scalar::i32, {"type", "cell", static_cast<std::int64_t>(i)})));
   }
 }
 
@@ -384,7 +279,7 @@ void VtkParser::start_attributes(Owner owner) {
   owner_ = owner;
   const Wanted wanted{owner == Owner::points ? "the number of POINT_DATA values"
                                              : "the number of CELL_DATA values"};
-  tuples_ = count(wanted);
+  tuples_ = values_.count(wanted);
   const std::size_t expected = owner == Owner::points ? grid_.points.size() : grid_.offsets.size();
   if (tuples_ != expected) {
     text_.fail_expected(wanted, std::to_string(expected), std::to_string(tuples_));
@@ -402,7 +297,7 @@ bool VtkParser::attribute(std::string_view keyword) {
   for (const Kind& kind : kinds) {
     if (!same_word(keyword, kind.keyword)) continue;
     const std::string name = decoded_name(text_.word({"the name of an array"}));
-    array(name, kind.components, tuples_, scalar({"the type of an array"}));
+    array(name, kind.components, tuples_, values_.scalar({"the type of an array"}));
     return true;
   }
   const bool color = same_word(keyword, "COLOR_SCALARS");
@@ -412,9 +307,9 @@ bool VtkParser::attribute(std::string_view keyword) {
     scalars();
   } else if (color || texture || table) {
     text_.word({"the name of an array"});
-    const std::size_t n = count({"the size of the array"});
-    const Scalar type = texture ? scalar({"the type of an array"}) : Scalar::u8;
-    skip_array(table ? 4 : n, table ? n : tuples_, type);
+    const std::size_t n = values_.count({"the size of the array"});
+    const Scalar type = texture ? values_.scalar({"the type of an array"}) : Scalar::u8;
+    values_.skip_array(table ? 4 : n, table ? n : tuples_, type);
   } else {
     return false;
   }
@@ -423,7 +318,7 @@ bool VtkParser::attribute(std::string_view keyword) {
 
 void VtkParser::scalars() {
   const std::string name = decoded_name(text_.word({"the name of an array"}));
-  const Scalar type = scalar({"the type of an array"});
+  const Scalar type = values_.scalar({"the type of an array"});
   std::size_t components = 1;
   if (!text_.at_line_end()) {
     components = static_cast<std::size_t>(text_.integer({"the number of components"}, 1, 1000));
@@ -438,16 +333,16 @@ void VtkParser::scalars() {
 
 void VtkParser::field() {
   text_.word({"the name of the field"});
-  const std::size_t arrays = count({"the number of arrays in the field"});
+  const std::size_t arrays = values_.count({"the number of arrays in the field"});
   for (std::size_t i = 0; i < arrays; ++i) {
     if (same_word(text_.peek(), "METADATA")) {
       text_.word({"METADATA"});
       metadata();
     }
     const std::string name = decoded_name(text_.word({"the name of an array"}));
-    const std::size_t components = count({"the number of components"});
-    const std::size_t tuples = count({"the number of tuples"});
-    array(name, components, tuples, scalar({"the type of an array"}));
+    const std::size_t components = values_.count({"the number of components"});
+    const std::size_t tuples = values_.count({"the number of tuples"});
+    array(name, components, tuples, values_.scalar({"the type of an array"}));
   }
 }
 
@@ -465,33 +360,18 @@ void VtkParser::array(std::string_view name, std::size_t components, std::size_t
                                                  : nullptr;
   if (labels == nullptr || components != 1 || tuples != tuples_ || type == Scalar::bit ||
       !labels->wants(name)) {
-    skip_array(components, tuples, type);
+    values_.skip_array(components, tuples, type);
     return;
   }
   const Wanted wanted{"the number of values of an array"};
-  start_data(wanted);
-  values_.check_room(tuples, 1, scalar_bytes(type), wanted);
+  values_.start_data(wanted);
+  values_.check_room(tuples, 1, type, wanted);
   std::vector<double> found;
   found.reserve(tuples);
   for (std::size_t i = 0; i < tuples; ++i) {
-    found.push_back(number(type, {"value", name, static_cast<std::int64_t>(i)}));
+    found.push_back(values_.number(type, {"value", name, static_cast<std::int64_t>(i)}));
   }
   labels->set(name, std::move(found));
-}
-
-void VtkParser::skip_array(std::size_t components, std::size_t tuples, Scalar type) {
-  const Wanted wanted{"the number of values of an array"};
-  start_data(wanted);
-  // Each factor on its own first, so that the product cannot overflow.
-  values_.check_room(components, 1, 1, wanted);
-  if (components > 0) values_.check_room(tuples, components, components, wanted);
-  const std::size_t total = components * tuples;
-  if (!values_.binary()) {
-    text_.skip_values(total, {"a value of an array"});
-    return;
-  }
-  const std::size_t bytes = type == Scalar::bit ? (total + 7) / 8 : total * scalar_bytes(type);
-  text_.take(bytes, {"a value of an array"});
 }
 
 }  // namespace

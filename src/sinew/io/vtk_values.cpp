@@ -1,0 +1,133 @@
+#include "sinew/io/vtk_values.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+namespace sinew::io {
+namespace {
+
+struct ScalarName {
+  std::string_view name;  // in upper case
+  Scalar type;
+};
+constexpr std::array scalar_names = {
+    ScalarName{"BIT", Scalar::bit},          ScalarName{"CHAR", Scalar::i8},
+    ScalarName{"SIGNED_CHAR", Scalar::i8},   ScalarName{"UNSIGNED_CHAR", Scalar::u8},
+    ScalarName{"SHORT", Scalar::i16},        ScalarName{"UNSIGNED_SHORT", Scalar::u16},
+    ScalarName{"INT", Scalar::i32},          ScalarName{"UNSIGNED_INT", Scalar::u32},
+    ScalarName{"LONG", Scalar::i64},         ScalarName{"UNSIGNED_LONG", Scalar::u64},
+    ScalarName{"VTKIDTYPE", Scalar::i32},  // written as int by VTK
+    ScalarName{"VTKTYPEINT64", Scalar::i64}, ScalarName{"VTKTYPEUINT64", Scalar::u64},
+    ScalarName{"FLOAT", Scalar::f32},        ScalarName{"DOUBLE", Scalar::f64},
+};
+
+std::size_t scalar_bytes(Scalar type) {
+  switch (type) {
+    case Scalar::i16:
+    case Scalar::u16:
+      return 2;
+    case Scalar::i32:
+    case Scalar::u32:
+    case Scalar::f32:
+      return 4;
+    case Scalar::i64:
+    case Scalar::u64:
+    case Scalar::f64:
+      return 8;
+    default:
+      return 1;
+  }
+}
+
+}  // namespace
+
+bool same_word(std::string_view a, std::string_view upper) {
+  return std::equal(a.begin(), a.end(), upper.begin(), upper.end(), [](char x, char y) {
+    return (x >= 'a' && x <= 'z' ? static_cast<char>(x - 'a' + 'A') : x) == y;
+  });
+}
+
+std::size_t VtkValues::count(const Wanted& wanted) {
+  return static_cast<std::size_t>(
+      text_.integer(wanted, 0, std::numeric_limits<std::int64_t>::max()));
+}
+
+Scalar VtkValues::scalar(const Wanted& wanted) {
+  const std::string_view found = text_.word(wanted);
+  for (const ScalarName& known : scalar_names) {
+    if (same_word(found, known.name)) return known.type;
+  }
+  text_.fail(fmt::format("expected {}, found {}", to_text(wanted), quoted(found)),
+             "the types of numbers are float, double, int, long, vtktypeint64 and the like; arrays "
+             "of text cannot be read: save the file without them");
+}
+
+void VtkValues::start_data(const Wanted& wanted) {
+  if (!binary_) return;
+  text_.end_line(wanted);
+  values_.set_binary(std::endian::native == std::endian::little);
+}
+
+void VtkValues::check_room(std::size_t records, std::size_t numbers_each, Scalar type,
+                           const Wanted& wanted) const {
+  values_.check_room(records, numbers_each, numbers_each * scalar_bytes(type), wanted);
+}
+
+double VtkValues::number(Scalar type, const Wanted& wanted) {
+  if (!binary_) return text_.real(wanted);
+  switch (type) {
+    case Scalar::i8:
+      return values_.value<std::int8_t>(wanted);
+    case Scalar::u8:
+    case Scalar::bit:
+      return values_.value<std::uint8_t>(wanted);
+    case Scalar::i16:
+      return values_.value<std::int16_t>(wanted);
+    case Scalar::u16:
+      return values_.value<std::uint16_t>(wanted);
+    case Scalar::i32:
+      return values_.value<std::int32_t>(wanted);
+    case Scalar::u32:
+      return values_.value<std::uint32_t>(wanted);
+    case Scalar::i64:
+      return static_cast<double>(values_.value<std::int64_t>(wanted));
+    case Scalar::u64:
+      return static_cast<double>(values_.value<std::uint64_t>(wanted));
+    case Scalar::f32:
+      return values_.value<float>(wanted);
+    case Scalar::f64:
+      return values_.value<double>(wanted);
+  }
+  return 0;
+}
+
+std::int64_t VtkValues::integer(Scalar type, const Wanted& wanted) {
+  if (type == Scalar::i64) return values_.value<std::int64_t>(wanted);
+  if (type == Scalar::i32) return values_.value<std::int32_t>(wanted);
+  text_.fail(fmt::format("{} has a type that point ids never have", to_text(wanted)),
+             "save the file again; ids are vtktypeint64 or int");
+}
+
+void VtkValues::skip_array(std::size_t components, std::size_t tuples, Scalar type) {
+  const Wanted wanted{"a value of an array"};
+  start_data({"the values of an array"});
+  // Neither form puts more than 8 values (bits) into a byte; so the product cannot overflow.
+  if (components > 0 && tuples > 8 * text_.remaining() / components) {
+    text_.fail(fmt::format("an array of {} times {} values cannot be in the {} bytes that follow",
+                           tuples, components, text_.remaining()),
+               "the file was cut short or the count is too large: fetch it again, or correct the "
+               "count");
+  }
+  const std::size_t total = components * tuples;
+  if (!binary_) {
+    text_.skip_values(total, wanted);
+  } else {
+    text_.take(type == Scalar::bit ? (total + 7) / 8 : total * scalar_bytes(type), wanted);
+  }
+}
+
+}  // namespace sinew::io

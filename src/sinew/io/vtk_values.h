@@ -1,0 +1,42 @@
+// The numbers of a legacy VTK file: typed, as text or as big-endian bytes. For vtk_read.cpp only.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+#include "sinew/io/value_reader.h"
+
+namespace sinew::io {
+
+// A VTK number type. long is 8 bytes, as on the 64-bit systems that write it.
+enum class Scalar { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64, bit };
+
+// Whether a is this word of upper-case letters; VTK ignores the case of its keywords.
+bool same_word(std::string_view a, std::string_view upper);
+
+class VtkValues {
+ public:
+  explicit VtkValues(TextReader& text) : text_(text), values_(text) {}
+
+  void set_form(bool binary) { binary_ = binary; }
+
+  // Counts and type names are text in both forms.
+  std::size_t count(const Wanted& wanted);
+  Scalar scalar(const Wanted& wanted);
+
+  // The data of an array start on the next line.
+  void start_data(const Wanted& wanted);
+  // Error unless records of so many numbers of this type can follow.
+  void check_room(std::size_t records, std::size_t numbers_each, Scalar type,
+                  const Wanted& wanted) const;
+  double number(Scalar type, const Wanted& wanted);
+  std::int64_t integer(Scalar type, const Wanted& wanted);
+  void skip_array(std::size_t components, std::size_t tuples, Scalar type);
+
+ private:
+  TextReader& text_;
+  ValueReader values_;
+  bool binary_ = false;
+};
+
+}  // namespace sinew::io

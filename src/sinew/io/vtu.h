@@ -1,0 +1,60 @@
+// VTU: an unstructured grid in VTK's XML format (VTK file formats, "XML File Formats").
+//
+// Read: ASCII, Base64 inline, appended Base64 and appended raw, each plain or zlib-compressed,
+// UInt32 and UInt64 headers, both byte orders, one Piece. Triangles become faces; labels come from
+// the arrays that vtk.h names.
+// Written: one Piece, tets first, then faces. ParaView and meshio read it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sinew/mesh/tet_mesh.h"
+
+namespace sinew::io {
+
+// name: for errors. Error (input) for everything that is not such a file, or holds no tetrahedra.
+TetMesh parse_vtu(std::string_view bytes, const std::string& name);
+
+enum class VtuEncoding { ascii, base64, zlib };  // zlib: compressed, then Base64
+
+template <typename T>
+struct VtuArray {
+  std::string name;
+  std::span<const T> values;  // (points) or (cells); must live until the file is written
+};
+
+// What goes into one file. Nothing is copied: the spans must live until it is written.
+struct VtuData {
+  std::span<const Vec3> points;     // positions (points)
+  std::span<const Tet> tets;        // point ids (tets)
+  std::span<const Triangle> faces;  // point ids (faces); may be empty
+  std::vector<VtuArray<double>> point_scalars;
+  std::vector<VtuArray<Vec3>> point_vectors;
+  std::vector<VtuArray<int>> point_integers;
+  std::vector<VtuArray<double>> cell_scalars;  // cells: the tets, then the faces
+  std::vector<VtuArray<int>> cell_integers;
+  std::optional<double> time;  // [s]; written as the field array TimeValue
+};
+
+struct VtuOptions {
+  VtuEncoding encoding = VtuEncoding::zlib;
+  // Positions and real arrays as Float64, for a mesh that must come back bit by bit; a frame to
+  // look at is half the size as Float32.
+  bool float64 = false;
+};
+
+// Error (internal) where an array's size is not that of the points or cells.
+std::string format_vtu(const VtuData& data, const VtuOptions& options = {});
+// As a whole or not at all (file_io.h). Error (io) where the system refuses.
+void write_vtu(const std::filesystem::path& path, const VtuData& data,
+               const VtuOptions& options = {});
+
+// A mesh with its labels as cell array "region" and point array "label", positions in Float64.
+std::string format_vtu(const TetMesh& mesh, VtuEncoding encoding);
+
+}  // namespace sinew::io
