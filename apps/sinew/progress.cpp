@@ -1,0 +1,118 @@
+#include "progress.h"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <locale>
+
+using namespace sinew;
+
+namespace {
+
+std::string duration_text(double seconds) {
+  if (seconds < 99.5) return fmt::format("{:.0f} s", std::ceil(seconds));
+  if (seconds < 5940) return fmt::format("{:.0f} min", std::ceil(seconds / 60));
+  return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+// 7970 -> "7,970"
+std::string grouped(std::int64_t n) {
+  std::string digits = std::to_string(n);
+  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
+  return digits;
+}
+
+// A value with a prefix that keeps it between 1 and 1000: 0.0012 s -> "1.2 ms".
+std::string scaled(double value, const char* unit) {
+  struct Prefix {
+    double factor;
+    const char* name;
+  };
+  static constexpr Prefix prefixes[] = {{1e9, "G"},  {1e6, "M"},  {1e3, "k"}, {1, ""},
+                                        {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
+  const double size = std::abs(value);
+  if (size == 0.0) return fmt::format("0 {}", unit);
+  for (const Prefix& p : prefixes) {
+    if (size >= p.factor || p.factor == 1e-9) {
+      return fmt::format("{:.3g} {}{}", value / p.factor, p.name, unit);
+    }
+  }
+  return {};
+}
+
+std::string percent(double share) {
+  return fmt::format("{:+.1f} %", 100 * share);
+}
+
+}  // namespace
+
+ProgressBar::ProgressBar(std::string title, bool wanted)
+    : title_(std::move(title)), active_(wanted && isatty(STDERR_FILENO) == 1) {}
+
+ProgressBar::~ProgressBar() {
+  clear();
+}
+
+void ProgressBar::update(const Progress& p) {
+  if (!active_) return;
+  const auto now = std::chrono::steady_clock::now();
+  if (drawn_ && now - last_ < std::chrono::milliseconds(100)) return;
+  last_ = now;
+  const double done = std::clamp(p.sim_seconds / p.duration, 0.0, 1.0);
+  const double gone = p.sim_seconds - p.start_seconds;
+  const double speed = p.wall_seconds > 0 ? gone / p.wall_seconds : 0;
+  const double left = speed > 0 ? (p.duration - p.sim_seconds) / speed : 0;
+  constexpr int width = 24;
+  const int filled = static_cast<int>(done * width);
+  std::string bar;
+  for (int i = 0; i < width; ++i) bar += i < filled ? "█" : "░";
+  fmt::print(stderr, "\r\033[K{} {} {:3.0f} %  {:.2f} of {:.2f} s  {:.2f}x real time  {} left",
+             title_, bar, 100 * done, p.sim_seconds, p.duration, speed, duration_text(left));
+  std::fflush(stderr);
+  drawn_ = true;
+}
+
+void ProgressBar::clear() {
+  if (!drawn_) return;
+  fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+  drawn_ = false;
+}
+
+std::string format_table(const Summary& s) {
+  std::string t;
+  const auto row = [&](const char* name, const std::string& text) {
+    t += fmt::format("  {:<12} {}\n", name, text);
+  };
+  t += fmt::format("{}\n", s.title.empty() ? s.scene : s.title);
+  for (const BodySummary& b : s.bodies) {
+    row("mesh", fmt::format("{}: {}, {} nodes, {} tets, {}", b.name, b.mesh, grouped(b.nodes),
+                            grouped(b.tets), scaled(b.mass * 1e3, "g")));
+    row("law", fmt::format("{}, {} springs", b.laws, grouped(b.springs)));
+  }
+  row("step",
+      fmt::format("{} ({}; stable up to {}), {} steps", scaled(s.dt, "s"),
+                  s.dt_auto ? "auto" : "given", scaled(s.stable_step, "s"), grouped(s.steps)));
+  row("wall time", fmt::format("{:.2f} s for {:.2f} s simulated: {:.2f}x real time", s.wall_seconds,
+                               s.sim_seconds, s.realtime_factor()));
+  row("energy", fmt::format("kinetic {}, elastic {}, gravity {}", scaled(s.energy.kinetic, "J"),
+                            scaled(s.energy.elastic, "J"), scaled(s.energy.gravity, "J")));
+  row("", fmt::format("dissipated {}, work in {}", scaled(s.energy.dissipated, "J"),
+                      scaled(s.energy.work_in, "J")));
+  row("volume", fmt::format("{} since the start", percent(s.volume_ratio - 1)));
+  row("stretch",
+      fmt::format("longest {}, shortest {} (in the run {}, {})", percent(s.max_stretch),
+                  percent(-s.max_compress), percent(s.peak_stretch), percent(-s.peak_compress)));
+  for (const ProbeReading& p : s.probes) {
+    const Vec3 d = 1e3 * p.displacement;
+    row("probe", fmt::format("{} moved {} ({:.2f}, {:.2f}, {:.2f}) mm", p.name,
+                             scaled(p.displacement.norm(), "m"), d.x(), d.y(), d.z()));
+  }
+  row("state hash", s.state_hash);
+  if (!s.look_for.empty()) t += fmt::format("\nLook for: {}\n", s.look_for);
+  for (const std::string& w : s.warnings) t += fmt::format("warning: {}\n", w);
+  return t;
+}

@@ -1,0 +1,26 @@
+// What a run shows while it goes on and when it is done.
+#pragma once
+
+#include <chrono>
+#include <string>
+
+#include "sinew/run/run.h"
+
+// A bar on the terminal's last line: simulated time, speed against real time, time that remains.
+class ProgressBar {
+ public:
+  // Draws nothing unless `wanted` and standard error is a terminal.
+  ProgressBar(std::string title, bool wanted);
+  ~ProgressBar();
+  void update(const sinew::Progress& progress);
+  void clear();
+
+ private:
+  std::string title_;
+  bool active_;
+  bool drawn_ = false;
+  std::chrono::steady_clock::time_point last_{};
+};
+
+// The table of a finished run.
+std::string format_table(const sinew::Summary& summary);

@@ -1,0 +1,174 @@
+#include "sinew/run/recorder.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <sstream>
+#include <string_view>
+
+#include "sinew/base/error.h"
+#include "sinew/base/parallel.h"
+#include "sinew/forces/springs.h"
+#include "sinew/forces/terms.h"
+#include "sinew/io/file_io.h"
+#include "sinew/io/pvd.h"
+#include "sinew/io/vtu.h"
+#include "sinew/run/summary.h"
+
+namespace sinew {
+namespace {
+
+namespace fs = std::filesystem;
+
+// frames/NAME_0012.vtu
+std::string frame_file(const std::string& scene, std::size_t frame) {
+  return fmt::format("frames/{}_{:04}.vtu", scene, frame);
+}
+
+std::string probe_header(const Model& model) {
+  std::string header = "time [s]";
+  for (const Probe& p : model.probes) {
+    for (const char* c : {"x", "y", "z"}) header += fmt::format(",{}.{} [m]", p.name, c);
+    for (const char* c : {"ux", "uy", "uz"}) header += fmt::format(",{}.{} [m]", p.name, c);
+  }
+  return header;
+}
+
+constexpr std::string_view energy_header =
+    "time [s],step [s],kinetic [J],elastic [J],gravity [J],dissipated [J],work_in [J],total [J],"
+    "volume_ratio,max_stretch,max_compress,contacts";
+
+// The file with its header and, of an earlier run, the first `rows` rows: opened to go on.
+std::ofstream open_table(const fs::path& file, std::string_view header, std::size_t rows) {
+  std::string kept = std::string(header) + "\n";
+  if (rows > 0) {
+    std::istringstream old(io::read_file(file));
+    std::string line;
+    std::getline(old, line);
+    for (std::size_t i = 0; i < rows && std::getline(old, line); ++i) kept += line + "\n";
+  }
+  io::write_file(file, kept);
+  std::ofstream table(file, std::ios::app);
+  if (!table) {
+    throw Error(ErrorKind::io, "cannot write", "free some space or choose another --out",
+                Location{file.string()});
+  }
+  return table;
+}
+
+void add_row(std::ofstream& table, const fs::path& file, const std::string& row) {
+  table << row << '\n' << std::flush;
+  if (!table) {
+    throw Error(ErrorKind::io, "cannot write", "free some space; then 'sinew resume' the folder",
+                Location{file.string()});
+  }
+}
+
+io::VtuEncoding encoding_of(const std::string& name) {
+  if (name == "ascii") return io::VtuEncoding::ascii;
+  return name == "base64" ? io::VtuEncoding::base64 : io::VtuEncoding::zlib;
+}
+
+}  // namespace
+
+std::vector<double> node_stretch(const Model& model, const std::vector<Vec3>& x) {
+  std::vector<double> stretch(uz(model.body_node_count()), 0.0);
+  parallel_for(model.body_node_count(), [&](Index i) {
+    double& most = stretch[uz(i)];
+    for (Index k = model.spring_start[uz(i)]; k < model.spring_start[uz(i) + 1]; ++k) {
+      const Index spring = model.node_spring[uz(k)] >> 1;
+      if (spring >= model.first_attachment) continue;
+      const auto s = uz(spring);
+      const Vec3 x_ij = x[uz(model.springs[s][1])] - x[uz(model.springs[s][0])];
+      const double value = x_ij.norm() / model.rest_length[s] - 1.0;
+      if (std::abs(value) > std::abs(most)) most = value;
+    }
+  });
+  return stretch;
+}
+
+Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, const RunState& run)
+    : model_(model),
+      scene_(scene.name),
+      folder_(std::move(folder)),
+      vtu_(scene.output.vtu),
+      encoding_(scene.output.encoding) {
+  const std::size_t rows = run.frame_times.size();
+  probes_ = open_table(folder_ / "probes.csv", probe_header(model), rows);
+  energy_ = open_table(folder_ / "energy.csv", energy_header, rows);
+}
+
+void Recorder::record(RunState& run, Workspace& workspace) {
+  const Energies e = measure_energies(model_, run.state, workspace);  // also fills the forces
+  run.frame_times.push_back(run.state.time);
+  if (vtu_) {
+    write_frame(run, synchronous_velocity(model_, run.state, workspace));
+    write_collection(run);
+  }
+
+  const std::vector<Vec3>& x = run.state.position;
+  std::string row = fmt::format("{}", run.state.time);
+  for (const ProbeReading& p : read_probes(model_, x)) {
+    for (const Vec3& v : {p.position, p.displacement}) {
+      row += fmt::format(",{},{},{}", v.x(), v.y(), v.z());
+    }
+  }
+  add_row(probes_, folder_ / "probes.csv", row);
+
+  const StretchRange range = measure_stretch(model_, x);
+  double rest = 0.0;
+  double volume = 0.0;
+  for (const Body& body : model_.bodies) {
+    rest += body.rest_volume;
+    volume += body.rest_volume * volume_ratio(model_, body, x);
+  }
+  add_row(energy_, folder_ / "energy.csv",
+          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", run.state.time, run.step, e.kinetic,
+                      e.elastic, e.gravity, e.dissipated, e.work_in, e.total(), volume / rest,
+                      range.stretch, range.compress, run.contacts));
+}
+
+void Recorder::write_frame(const RunState& run, const std::vector<Vec3>& velocity) const {
+  const std::vector<Vec3>& x = run.state.position;
+  const auto nodes = uz(model_.body_node_count());
+  std::vector<Vec3> displacement(nodes);
+  std::vector<int> pinned(nodes);
+  for (std::size_t i = 0; i < nodes; ++i) {
+    displacement[i] = x[i] - model_.rest_position[i];
+    pinned[i] = model_.inverse_mass[i] == 0.0 ? 1 : 0;
+  }
+  std::vector<double> ratio(model_.tets.size());
+  std::vector<int> body(model_.tets.size());
+  for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+    const Range tets = model_.bodies[b].tets;
+    for (Index t = tets.begin; t < tets.end; ++t) {
+      ratio[uz(t)] = signed_volume(x, model_.tets[uz(t)]) / model_.rest_volume[uz(t)];
+      body[uz(t)] = static_cast<int>(b);
+    }
+  }
+  const std::vector<double> stretch = node_stretch(model_, x);
+
+  io::VtuData data;
+  data.points = std::span(x).first(nodes);
+  data.tets = model_.tets;
+  data.point_vectors = {{"displacement", displacement},
+                        {"velocity", std::span(velocity).first(nodes)}};
+  data.point_scalars = {{"stretch", stretch}};
+  data.point_integers = {{"pinned", pinned}};
+  data.cell_scalars = {{"volume_ratio", ratio}};
+  data.cell_integers = {{"region", model_.tet_region}, {"body", body}};
+  data.time = run.state.time;
+  io::VtuOptions options;
+  options.encoding = encoding_of(encoding_);
+  io::write_vtu(folder_ / frame_file(scene_, run.frame_times.size() - 1), data, options);
+}
+
+void Recorder::write_collection(const RunState& run) const {
+  std::vector<io::PvdEntry> entries;
+  for (std::size_t f = 0; f < run.frame_times.size(); ++f) {
+    entries.push_back({run.frame_times[f], frame_file(scene_, f)});
+  }
+  io::write_pvd(folder_ / (scene_ + ".pvd"), entries);
+}
+
+}  // namespace sinew

@@ -1,0 +1,40 @@
+// Writes what a run shows: a VTU file per frame with a .pvd over them, probes.csv, energy.csv.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/run/stepping.h"
+#include "sinew/scene/scene.h"
+
+namespace sinew {
+
+class Recorder {
+ public:
+  // `folder` has to exist. A resumed run (run.frame_times not empty) keeps the rows of the frames
+  // that its checkpoint knows and drops what was written after it.
+  Recorder(const Scene& scene, const Model& model, std::filesystem::path folder,
+           const RunState& run);
+
+  // Writes the frame that the state now stands at and appends its time to run.frame_times.
+  void record(RunState& run, Workspace& workspace);
+
+ private:
+  void write_frame(const RunState& run, const std::vector<Vec3>& velocity) const;
+  void write_collection(const RunState& run) const;
+
+  const Model& model_;
+  std::string scene_;  // its name, which names the files
+  std::filesystem::path folder_;
+  bool vtu_;
+  std::string encoding_;
+  std::ofstream probes_;
+  std::ofstream energy_;
+};
+
+// Stretch of each body node: that of its spring furthest from rest, |x_ij| / l0 - 1 [-].
+std::vector<double> node_stretch(const Model& model, const std::vector<Vec3>& x);
+
+}  // namespace sinew

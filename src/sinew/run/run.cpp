@@ -1,0 +1,220 @@
+#include "sinew/run/run.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <string>
+#include <vector>
+
+#include "sinew/base/hash.h"
+#include "sinew/forces/springs.h"
+#include "sinew/io/file_io.h"
+#include "sinew/run/checkpoint.h"
+#include "sinew/run/recorder.h"
+#include "sinew/scene/build.h"
+
+namespace sinew {
+namespace {
+
+namespace fs = std::filesystem;
+using Clock = std::chrono::steady_clock;
+
+constexpr const char* checkpoint_name = "checkpoint.bin";
+constexpr const char* scene_name = "scene.toml";
+constexpr const char* summary_name = "summary.json";
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// The folder to write, made and empty of earlier runs.
+void prepare_folder(const Scene& scene, const RunOptions& options) {
+  if (options.out.empty()) return;
+  const bool has_run =
+      fs::exists(options.out / checkpoint_name) || fs::exists(options.out / summary_name);
+  if (has_run && !options.force) {
+    throw Error(ErrorKind::usage, "the folder already holds a run",
+                "choose another --out, or --force to replace it, or 'sinew resume' to go on",
+                Location{options.out.string()});
+  }
+  std::error_code failed;
+  if (has_run) {
+    for (const char* name :
+         {checkpoint_name, summary_name, scene_name, "probes.csv", "energy.csv"}) {
+      fs::remove(options.out / name, failed);
+    }
+    fs::remove_all(options.out / "frames", failed);
+  }
+  fs::create_directories(options.out / "frames", failed);
+  if (failed) {
+    throw Error(ErrorKind::io, "cannot make the folder: " + failed.message(),
+                "choose an --out where you may write", Location{options.out.string()});
+  }
+  io::write_file(options.out / scene_name, scene.document);
+}
+
+// One run from where RunState stands to its end.
+class Runner {
+ public:
+  Runner(const Scene& scene, const Model& model, std::vector<std::string> meshes,
+         std::vector<std::string> warnings, const RunOptions& options)
+      : scene_(scene),
+        model_(model),
+        meshes_(std::move(meshes)),
+        warnings_(std::move(warnings)),
+        options_(options) {}
+
+  RunResult run(RunState run) {
+    const Clock::time_point start = Clock::now();
+    const double wall_before = run.wall_seconds;
+    const double sim_before = run.state.time;
+    Stepping stepping(scene_, model_, run);
+    std::optional<Recorder> recorder;
+    if (!options_.out.empty()) {
+      prepare_folder_once(run);
+      recorder.emplace(scene_, model_, options_.out, run);
+    }
+    if (run.frame_times.empty()) {
+      run.start_energy = measure_energies(model_, run.state, stepping.workspace()).total();
+      record(recorder, run, stepping.workspace());
+      save(run);
+    }
+
+    RunResult result;
+    RunState good = run;  // at the last finished frame: what is kept when the run diverges
+    Clock::time_point saved = Clock::now();
+    try {
+      while (run.frame < stepping.frame_count()) {
+        const bool finished = stepping.advance_frame(run, options_.stop);
+        run.wall_seconds = wall_before + seconds_since(start);
+        if (finished) {
+          record(recorder, run, stepping.workspace());
+          good = run;
+          report({run.state.time, scene_.duration, seconds_since(start), sim_before, run.frame,
+                  stepping.frame_count()});
+        }
+        if (options_.stop != nullptr && options_.stop->load()) {
+          if (run.frame < stepping.frame_count()) result.status = RunStatus::interrupted;
+          break;
+        }
+        if (finished && seconds_since(saved) >= scene_.output.checkpoint) {
+          save(run);
+          saved = Clock::now();
+        }
+      }
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::diverged) throw;
+      result.status = RunStatus::diverged;
+      result.error = error;
+      run = good;
+    }
+    run.wall_seconds = wall_before + seconds_since(start);
+    save(run);
+    result.summary = finish_summary(run, stepping.workspace(), result.status);
+    return result;
+  }
+
+ private:
+  void prepare_folder_once(const RunState& run) {
+    if (run.frame_times.empty()) prepare_folder(scene_, options_);
+  }
+
+  void record(std::optional<Recorder>& recorder, RunState& run, Workspace& workspace) const {
+    const StretchRange range = measure_stretch(model_, run.state.position);
+    run.peak_stretch = std::max(run.peak_stretch, range.stretch);
+    run.peak_compress = std::max(run.peak_compress, range.compress);
+    if (recorder) {
+      recorder->record(run, workspace);
+    } else {
+      run.frame_times.push_back(run.state.time);
+    }
+  }
+
+  void save(const RunState& run) const {
+    if (!options_.out.empty()) write_checkpoint(options_.out / checkpoint_name, model_, run);
+  }
+
+  void report(const Progress& progress) const {
+    if (options_.on_progress) options_.on_progress(progress);
+  }
+
+  Summary finish_summary(RunState& run, Workspace& workspace, RunStatus status) const {
+    Summary s = summarize(scene_, model_, meshes_, run, workspace);
+    s.status = status == RunStatus::finished      ? "finished"
+               : status == RunStatus::interrupted ? "interrupted"
+                                                  : "diverged";
+    s.warnings = warnings_;
+    if (run.unstable_watches > 0 && !scene_.allow_unstable) {
+      s.warnings.push_back(
+          fmt::format("the given step {:.4g} s was above the stable one ({:.4g} s at the least) as "
+                      "the body deformed; take dt = \"auto\"",
+                      run.step, run.smallest_stable_step));
+    }
+    if (run.unmet_limits > 0) {
+      s.warnings.push_back(
+          fmt::format("{} of {} steps ended with a limit violated; more limit_sweeps, or a larger "
+                      "limit_tolerance, or limits that the pins leave room for",
+                      run.unmet_limits, run.state.step));
+    }
+    if (!options_.out.empty()) {
+      io::write_file(options_.out / summary_name, to_json(s).dump(2) + "\n");
+    }
+    return s;
+  }
+
+  const Scene& scene_;
+  const Model& model_;
+  std::vector<std::string> meshes_;
+  std::vector<std::string> warnings_;
+  const RunOptions& options_;
+};
+
+RunResult build_and_run(const Scene& scene, const RunOptions& options, bool resume) {
+  BuildReport report;
+  const Model model = build_model(scene, &report);
+  std::vector<std::string> meshes;
+  std::vector<std::string> warnings;
+  for (const BuildReport::Body& body : report.bodies) {
+    meshes.push_back(body.mesh);
+    for (const std::string& w : body.warnings) {
+      warnings.push_back(fmt::format("body {}: {}", body.name, w));
+    }
+  }
+  RunState start;
+  if (resume) {
+    start = read_checkpoint(options.out / checkpoint_name, model);
+  } else {
+    start.state = initial_state(model);
+  }
+  return Runner(scene, model, meshes, warnings, options).run(std::move(start));
+}
+
+}  // namespace
+
+RunResult run_scene(const Scene& scene, const RunOptions& options) {
+  return build_and_run(scene, options, false);
+}
+
+RunResult resume_run(const std::filesystem::path& folder, const RunOptions& options) {
+  if (!fs::exists(folder / checkpoint_name) || !fs::exists(folder / scene_name)) {
+    throw Error(ErrorKind::input, "nothing to resume: scene.toml and checkpoint.bin are not there",
+                "name the folder that 'sinew run' wrote", Location{folder.string()});
+  }
+  RunOptions here = options;
+  here.out = folder;
+  return build_and_run(load_scene(folder / scene_name), here, true);
+}
+
+int exit_code(const RunResult& result) {
+  switch (result.status) {
+    case RunStatus::finished:
+      return 0;
+    case RunStatus::interrupted:
+      return 130;
+    case RunStatus::diverged:
+      return static_cast<int>(ErrorKind::diverged);
+  }
+  return static_cast<int>(ErrorKind::internal);
+}
+
+}  // namespace sinew

@@ -1,0 +1,55 @@
+// Runs a scene from its start, or on from a checkpoint, into a folder.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "sinew/base/error.h"
+#include "sinew/run/summary.h"
+#include "sinew/scene/scene.h"
+
+namespace sinew {
+
+struct Progress {
+  double sim_seconds = 0.0;
+  double duration = 0.0;
+  double wall_seconds = 0.0;   // of this run, from before the first step
+  double start_seconds = 0.0;  // simulated time at which this run began (a resumed one: not 0)
+  std::int64_t frame = 0;
+  std::int64_t frames = 0;
+};
+
+struct RunOptions {
+  std::filesystem::path out;                         // folder to write; empty: write nothing
+  bool force = false;                                // an earlier run in `out` may be replaced
+  const std::atomic<bool>* stop = nullptr;           // set it to end after the step under way
+  std::function<void(const Progress&)> on_progress;  // called after every frame
+};
+
+enum class RunStatus { finished, interrupted, diverged };
+
+struct RunResult {
+  RunStatus status = RunStatus::finished;
+  Summary summary;
+  std::optional<Error> error;  // why a run diverged
+};
+
+// The folder gets scene.toml (the scene with its overrides, from which it can be resumed),
+// NAME.pvd and frames/*.vtu, probes.csv, energy.csv, checkpoint.bin, summary.json.
+// Throws Error(input) for a scene that cannot be built, Error(unstable) for a step above the
+// stable one, Error(usage) where `out` holds a run, Error(io). A run that diverges does not throw:
+// its last good frame, checkpoint and summary are kept.
+RunResult run_scene(const Scene& scene, const RunOptions& options);
+
+// Goes on with the run in `folder` from its checkpoint; ends with the same bits as an unbroken
+// run. options.out is ignored. Throws Error(input) where there is nothing to resume.
+RunResult resume_run(const std::filesystem::path& folder, const RunOptions& options);
+
+// The exit code of the process for a result: 0, 130 (interrupted) or that of the error.
+int exit_code(const RunResult& result);
+
+}  // namespace sinew

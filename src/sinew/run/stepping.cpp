@@ -1,0 +1,122 @@
+#include "sinew/run/stepping.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/base/error.h"
+#include "sinew/solver/verlet.h"
+
+namespace sinew {
+namespace {
+
+// Steps between two looks at the stable step; a look costs about as much as ten steps.
+constexpr std::int64_t watch_interval = 128;
+
+// A number that rounding has left a little above an integer is that integer.
+std::int64_t round_up(double x) {
+  return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(x * (1.0 - 1e-12))));
+}
+
+[[noreturn]] void refuse(const Scene& scene, const Model& model, const StableStep& stable) {
+  const double h = *scene.dt / scene.substeps;
+  throw Error(
+      ErrorKind::unstable,
+      fmt::format("the step {:.4g} s is above the largest stable one, {:.4g} s; the stiffest "
+                  "spring is {}",
+                  h, stable.step, describe_spring(model, stable.stiffest)),
+      fmt::format("a smaller step (dt <= {:.3g}, or dt = \"auto\"); or more substeps (substeps = "
+                  "{}); or a softer material or a coarser mesh. allow_unstable = true runs it all "
+                  "the same",
+                  std::floor(stable.step * scene.substeps * 1e6) * 1e-6,
+                  round_up(*scene.dt / stable.step)),
+      Location{scene.file});
+}
+
+}  // namespace
+
+Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
+    : model_(model),
+      workspace_(model),
+      automatic_(!scene.dt.has_value()),
+      allow_unstable_(scene.allow_unstable),
+      safety_(scene.safety),
+      duration_(scene.duration),
+      interval_(1.0 / scene.output.fps) {
+  if (!automatic_) interval_ = std::max(interval_, *scene.dt / scene.substeps);
+  frames_ = round_up(duration_ / interval_);
+  if (run.target_step > 0.0) return;  // goes on from a checkpoint
+
+  StableStep stable = find_stable_step(model, run.state.position, workspace_);
+  run.stable_step = stable.step;
+  run.smallest_stable_step = stable.step;
+  run.stiff_mode = std::move(stable.mode);
+  run.steps_to_watch = watch_interval;
+  if (automatic_) {
+    run.target_step = std::min(safety_ * stable.step, interval_);
+  } else {
+    run.target_step = *scene.dt / scene.substeps;
+    if (run.target_step > stable.step && !allow_unstable_) refuse(scene, model, stable);
+  }
+}
+
+double Stepping::frame_end(std::int64_t frame) const {
+  return std::min(duration_, static_cast<double>(frame) * interval_);
+}
+
+void Stepping::begin_frame(RunState& run) const {
+  const double end = frame_end(run.frame + 1);
+  if (automatic_) {
+    const double span = end - run.state.time;
+    run.steps_left = round_up(span / run.target_step);
+    run.step = span / static_cast<double>(run.steps_left);
+  } else {
+    // Frame f ends with the step nearest to its time, counted from the start: nothing adds up.
+    run.step = run.target_step;
+    run.steps_left = std::max<std::int64_t>(1, std::llround(end / run.step)) - run.state.step;
+  }
+}
+
+void Stepping::watch(RunState& run) {
+  run.steps_to_watch = watch_interval;
+  if (run.stiff_mode.empty()) return;
+  StableStep now =
+      watch_stable_step(model_, run.state.position, run.step, run.stiff_mode, workspace_);
+  if (now.mode.empty() || !std::isfinite(now.step)) return;
+  run.stable_step = now.step;
+  run.smallest_stable_step = std::min(run.smallest_stable_step, now.step);
+  run.stiff_mode = std::move(now.mode);
+  const double wish = std::min(safety_ * now.step, interval_);
+  if (!automatic_) {
+    if (run.step > now.step) ++run.unstable_watches;
+  } else if (run.step > 1.03 * wish) {
+    // The margin is being eaten up: shorten the rest of the frame.
+    ++run.step_reductions;
+    run.target_step = wish;
+    const double span = run.step * static_cast<double>(run.steps_left);
+    run.steps_left = round_up(span / wish);
+    run.step = span / static_cast<double>(run.steps_left);
+  } else if (wish > 1.25 * run.target_step) {
+    run.target_step = wish;  // from the next frame on
+  }
+}
+
+bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
+  if (run.steps_left == 0) begin_frame(run);
+  while (run.steps_left > 0) {
+    if (run.steps_to_watch == 0) watch(run);
+    const VerletReport report = verlet_step(model_, run.step, run.state, workspace_);
+    --run.steps_left;
+    --run.steps_to_watch;
+    run.contacts = report.contacts;
+    run.limit_sweeps += report.limit_sweeps;
+    run.unmet_limits += report.limits_met ? 0 : 1;
+    if (run.steps_left > 0 && stop != nullptr && stop->load()) return false;
+  }
+  ++run.frame;
+  if (automatic_) run.state.time = frame_end(run.frame);
+  return true;
+}
+
+}  // namespace sinew

@@ -1,0 +1,67 @@
+// Chooses the steps of a run: fixed, or as the stable step asks. Everything that decides the next
+// step is in RunState, so that a run can be cut anywhere and go on to the same bits.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <vector>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/state.h"
+#include "sinew/scene/scene.h"
+#include "sinew/solver/stable_step.h"
+
+namespace sinew {
+
+// State, plus where the run stands: all that a checkpoint holds.
+struct RunState {
+  State state;
+  std::int64_t frame = 0;             // frames finished; frame 0 is the start
+  std::int64_t steps_left = 0;        // steps to the end of the frame under way
+  std::int64_t steps_to_watch = 0;    // steps until the stable step is looked at again
+  double step = 0.0;                  // h now taken [s]
+  double target_step = 0.0;           // the longest h that may be taken [s]
+  double stable_step = 0.0;           // h_c when last looked at [s]
+  double smallest_stable_step = 0.0;  // over the run [s]
+  std::vector<Vec3> stiff_mode;       // the mode that limits the step (nodes)
+  std::int64_t step_reductions = 0;   // times that the step was made shorter during the run
+  std::int64_t unstable_watches = 0;  // times that a given dt was found above the stable step
+  std::int64_t limit_sweeps = 0;      // sweeps over limited springs in all
+  std::int64_t unmet_limits = 0;      // steps that ended with a limit violated
+  std::int64_t contacts = 0;          // nodes on the ground in the last step
+  double peak_stretch = 0.0;          // over the frames [-]
+  double peak_compress = 0.0;         // over the frames [-]
+  double start_energy = 0.0;          // total at the start [J]
+  double wall_seconds = 0.0;          // spent so far
+  std::vector<double> frame_times;    // of the frames written [s]
+};
+
+class Stepping {
+ public:
+  // Checks the scene's dt against the stable step of the model as it starts.
+  // Throws Error(unstable) where dt / substeps is above it and the scene does not allow that.
+  Stepping(const Scene& scene, const Model& model, RunState& run);
+
+  // Runs to the end of the next frame, or until `stop` is set after a step. Returns true when the
+  // frame is finished. Throws Error(diverged), see verlet_step.
+  bool advance_frame(RunState& run, const std::atomic<bool>* stop);
+
+  std::int64_t frame_count() const { return frames_; }
+  Workspace& workspace() { return workspace_; }
+
+ private:
+  double frame_end(std::int64_t frame) const;
+  void begin_frame(RunState& run) const;
+  void watch(RunState& run);
+
+  const Model& model_;
+  Workspace workspace_;
+  bool automatic_;
+  bool allow_unstable_;
+  double safety_;
+  double duration_;
+  double interval_;  // between frames [s]
+  std::int64_t frames_;
+};
+
+}  // namespace sinew

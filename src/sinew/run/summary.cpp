@@ -1,0 +1,159 @@
+#include "sinew/run/summary.h"
+
+#include <cmath>
+
+#include "sinew/base/hash.h"
+#include "sinew/forces/limits.h"
+#include "sinew/forces/springs.h"
+
+namespace sinew {
+namespace {
+
+nlohmann::ordered_json vec(const Vec3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+BodySummary summarize_body(const Model& model, const Body& body, const std::string& mesh,
+                           const std::vector<Vec3>& x) {
+  BodySummary s;
+  s.name = body.name;
+  s.mesh = mesh;
+  s.laws = body.laws;
+  s.nodes = body.nodes.size();
+  s.tets = body.tets.size();
+  s.springs = body.springs.size();
+  s.rest_volume = body.rest_volume;
+  s.volume_ratio = volume_ratio(model, body, x);
+  for (Index i = body.nodes.begin; i < body.nodes.end; ++i) s.mass += model.mass[uz(i)];
+  return s;
+}
+
+}  // namespace
+
+std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3>& x) {
+  std::vector<ProbeReading> readings;
+  for (const Probe& probe : model.probes) {
+    ProbeReading r;
+    r.name = probe.name;
+    Vec3 rest = Vec3::Zero();
+    for (const Index node : probe.nodes) {
+      r.position += x[uz(node)];
+      rest += model.rest_position[uz(node)];
+    }
+    const auto count = static_cast<double>(probe.nodes.size());
+    r.position /= count;
+    r.displacement = r.position - rest / count;
+    readings.push_back(std::move(r));
+  }
+  return readings;
+}
+
+Summary summarize(const Scene& scene, const Model& model, const std::vector<std::string>& meshes,
+                  RunState& run, Workspace& workspace) {
+  const std::vector<Vec3>& x = run.state.position;
+  Summary s;
+  s.scene = scene.name;
+  s.title = scene.title;
+  s.look_for = scene.look_for;
+  Hash scene_hash;
+  scene_hash.text(scene.document);
+  s.scene_hash = hex(scene_hash.digest());
+  s.model_hash = hex(model.hash());
+  s.state_hash = hex(run.state.hash());
+  double rest_volume = 0.0;
+  double volume = 0.0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    s.bodies.push_back(summarize_body(model, model.bodies[b], meshes[b], x));
+    s.tets += s.bodies.back().tets;
+    rest_volume += s.bodies.back().rest_volume;
+    volume += s.bodies.back().rest_volume * s.bodies.back().volume_ratio;
+  }
+  s.volume_ratio = volume / rest_volume;
+  s.nodes = model.body_node_count();
+  s.springs = model.spring_count();
+  s.stepper = scene.stepper;
+  s.dt_auto = !scene.dt.has_value();
+  s.dt = run.step;
+  s.stable_step = run.smallest_stable_step;
+  s.steps = run.state.step;
+  s.frames = run.frame;
+  s.sim_seconds = run.state.time;
+  s.wall_seconds = run.wall_seconds;
+  s.energy = measure_energies(model, run.state, workspace);
+  s.energy_drift = s.energy.total() - run.start_energy;
+  const StretchRange range = measure_stretch(model, x);
+  s.max_stretch = range.stretch;
+  s.max_compress = range.compress;
+  s.peak_stretch = run.peak_stretch;
+  s.peak_compress = run.peak_compress;
+  s.contacts = run.contacts;
+  s.limit_sweeps = run.limit_sweeps;
+  s.unmet_limits = run.unmet_limits;
+  s.limit_violation = measure_limit_violation(model, x);
+  s.step_reductions = run.step_reductions;
+  s.probes = read_probes(model, x);
+  return s;
+}
+
+nlohmann::ordered_json to_json(const Summary& s) {
+  nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
+  nlohmann::ordered_json laws = nlohmann::ordered_json::object();
+  for (const BodySummary& b : s.bodies) {
+    laws[b.name] = b.laws;
+    bodies.push_back({{"name", b.name},
+                      {"mesh", b.mesh},
+                      {"laws", b.laws},
+                      {"nodes", b.nodes},
+                      {"tets", b.tets},
+                      {"springs", b.springs},
+                      {"mass", b.mass},
+                      {"rest_volume", b.rest_volume},
+                      {"volume_ratio", b.volume_ratio}});
+  }
+  nlohmann::ordered_json probes = nlohmann::ordered_json::object();
+  for (const ProbeReading& p : s.probes) {
+    probes[p.name] = {{"position", vec(p.position)}, {"displacement", vec(p.displacement)}};
+  }
+  return {{"version", SINEW_VERSION},
+          {"status", s.status},
+          {"scene", s.scene},
+          {"title", s.title},
+          {"scene_hash", s.scene_hash},
+          {"model_hash", s.model_hash},
+          {"mesh", {{"nodes", s.nodes}, {"tets", s.tets}, {"springs", s.springs}}},
+          {"bodies", bodies},
+          {"laws", laws},
+          {"stepper", s.stepper},
+          {"dt", s.dt},
+          {"dt_auto", s.dt_auto},
+          {"stable_step", std::isfinite(s.stable_step) ? nlohmann::ordered_json(s.stable_step)
+                                                       : nlohmann::ordered_json()},
+          {"step_reductions", s.step_reductions},
+          {"steps", s.steps},
+          {"frames", s.frames},
+          {"sim_seconds", s.sim_seconds},
+          {"wall_seconds", s.wall_seconds},
+          {"realtime_factor", s.realtime_factor()},
+          {"energy",
+           {{"kinetic", s.energy.kinetic},
+            {"elastic", s.energy.elastic},
+            {"gravity", s.energy.gravity},
+            {"dissipated", s.energy.dissipated},
+            {"work_in", s.energy.work_in},
+            {"drift", s.energy_drift}}},
+          {"volume_ratio", s.volume_ratio},
+          {"max_stretch", s.max_stretch},
+          {"max_compress", s.max_compress},
+          {"peak_stretch", s.peak_stretch},
+          {"peak_compress", s.peak_compress},
+          {"contacts", s.contacts},
+          {"limits",
+           {{"sweeps", s.limit_sweeps},
+            {"unmet_steps", s.unmet_limits},
+            {"violation", s.limit_violation}}},
+          {"state_hash", s.state_hash},
+          {"probes", probes},
+          {"warnings", s.warnings}};
+}
+
+}  // namespace sinew

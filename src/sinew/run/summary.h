@@ -1,0 +1,69 @@
+// What a run comes to, as summary.json and the table of the command line say it.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "sinew/forces/terms.h"
+#include "sinew/run/stepping.h"
+
+namespace sinew {
+
+struct ProbeReading {
+  std::string name;
+  Vec3 position = Vec3::Zero();      // mean of its nodes [m]
+  Vec3 displacement = Vec3::Zero();  // of that mean from the rest position [m]
+};
+
+struct BodySummary {
+  std::string name;
+  std::string mesh;  // file or shape
+  std::string laws;
+  Index nodes = 0, tets = 0, springs = 0;
+  double mass = 0.0;          // [kg]
+  double rest_volume = 0.0;   // [m3]
+  double volume_ratio = 1.0;  // current over rest volume [-]
+};
+
+struct Summary {
+  std::string status;  // finished, interrupted, diverged
+  std::string scene, title, look_for;
+  std::string scene_hash, model_hash, state_hash;
+  std::vector<BodySummary> bodies;
+  Index nodes = 0, tets = 0, springs = 0;
+  std::string stepper;
+  bool dt_auto = true;
+  double dt = 0.0;           // the step last taken [s]
+  double stable_step = 0.0;  // the smallest seen in the run [s]
+  std::int64_t steps = 0;
+  std::int64_t frames = 0;
+  double sim_seconds = 0.0;
+  double wall_seconds = 0.0;
+  Energies energy;
+  double energy_drift = 0.0;  // change of the account's total since the start [J]
+  double volume_ratio = 1.0;  // of all bodies together [-]
+  double max_stretch = 0.0, max_compress = 0.0;    // at the end, as a share of the rest length
+  double peak_stretch = 0.0, peak_compress = 0.0;  // the largest of all frames
+  std::int64_t contacts = 0;                       // nodes on the ground at the end
+  std::int64_t limit_sweeps = 0, unmet_limits = 0;
+  double limit_violation = 0.0;  // at the end, as a share of the rest length
+  std::int64_t step_reductions = 0;
+  std::vector<ProbeReading> probes;
+  std::vector<std::string> warnings;
+
+  double realtime_factor() const { return wall_seconds > 0.0 ? sim_seconds / wall_seconds : 0.0; }
+};
+
+// The probes' means at positions x.
+std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3>& x);
+
+// Measures the run as it stands. `meshes`: where each body's mesh came from.
+Summary summarize(const Scene& scene, const Model& model, const std::vector<std::string>& meshes,
+                  RunState& run, Workspace& workspace);
+
+// The object of summary.json: docs/output.md names its keys.
+nlohmann::ordered_json to_json(const Summary& summary);
+
+}  // namespace sinew

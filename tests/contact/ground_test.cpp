@@ -1,0 +1,110 @@
+#include "sinew/contact/ground.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sinew/forces/assemble.h"
+#include "sinew/forces/workspace.h"
+
+namespace sinew {
+namespace {
+
+// One free mass over the plane y = 0 under gravity g, advanced as the stepper does.
+struct Ball {
+  explicit Ball(const Vec3& x, const Vec3& v, double restitution, double friction) {
+    Body body;
+    body.name = "ball";
+    body.nodes = {0, 1};
+    model.bodies = {body};
+    model.rest_position = {x};
+    model.mass = {2.0};
+    model.drag = {0.0};
+    model.start_velocity = {v};
+    model.ground = Ground{Vec3::Zero(), Vec3::UnitY(), restitution, friction};
+    finish(model);
+    state = initial_state(model);
+  }
+  void step(double h) {
+    const std::vector<Vec3> force = {2.0 * Vec3(0, -g, 0)};
+    state.half_velocity[0] += 0.5 * (state.last_step + h) * Vec3(0, -g, 0);
+    state.position[0] += h * state.half_velocity[0];
+    const GroundReport r = respond_to_ground(model, force, h, state);
+    contacts += r.contacts;
+    dissipated += r.dissipated;
+    state.last_step = h;
+  }
+  double top(double h, int steps) {  // highest point over the steps to come
+    double y = 0.0;
+    for (int i = 0; i < steps; ++i) {
+      step(h);
+      y = std::max(y, state.position[0].y());
+    }
+    return y;
+  }
+  static constexpr double g = 10.0;
+  Model model;
+  State state;
+  Index contacts = 0;
+  double dissipated = 0.0;
+};
+
+TEST(Ground, RestitutionOneKeepsTheHeightForEver) {
+  Ball ball(Vec3(0, 1, 0), Vec3::Zero(), 1.0, 0.0);
+  const double h = 0.00317;
+  ball.top(h, 100'000);  // some 350 bounces
+  EXPECT_NEAR(ball.top(h, 1000), 1.0, 2e-5);
+  EXPECT_NEAR(ball.dissipated, 0.0, 1e-9);
+}
+
+TEST(Ground, RestitutionHalvesTheSpeedAndQuartersTheHeight) {
+  Ball ball(Vec3(0, 1, 0), Vec3::Zero(), 0.5, 0.0);
+  const double h = 1e-4;
+  while (ball.contacts == 0) ball.step(h);
+  EXPECT_NEAR(ball.top(h, 3000), 0.25, 1e-5);
+  EXPECT_NEAR(ball.dissipated, 2.0 * 10.0 * 0.75, 1e-3);
+}
+
+TEST(Ground, ComesToRestOnThePlaneAndStaysThere) {
+  Ball ball(Vec3(0, 0.1, 0), Vec3::Zero(), 0.5, 0.5);
+  for (int i = 0; i < 20'000; ++i) ball.step(1e-3);
+  EXPECT_EQ(ball.state.position[0].y(), 0.0);
+  EXPECT_NEAR(ball.dissipated, 2.0 * 10.0 * 0.1, 0.01);
+}
+
+TEST(Ground, CoulombFrictionStopsASlidingBodyAfterVSquaredOver2MuG) {
+  Ball ball(Vec3(0, 0, 0), Vec3(2, 0, 0), 0.0, 0.4);
+  for (int i = 0; i < 10'000; ++i) ball.step(1e-3);
+  EXPECT_NEAR(ball.state.position[0].x(), 4.0 / (2 * 0.4 * 10.0), 2e-3);
+  EXPECT_EQ(ball.state.half_velocity[0].norm(), 0.0);
+  EXPECT_NEAR(ball.dissipated, 0.5 * 2.0 * 4.0, 0.02);
+}
+
+TEST(Ground, SlopeHoldsBelowTheFrictionAngleAndLetsGoAboveIt) {
+  for (const bool holds : {true, false}) {
+    Ball ball(Vec3(0, 0, 0), Vec3::Zero(), 0.0, 0.5);
+    const double angle = std::atan(0.5) + (holds ? -0.01 : 0.01);
+    ball.model.ground->normal = Vec3(std::sin(angle), std::cos(angle), 0);
+    for (int i = 0; i < 1000; ++i) ball.step(1e-3);
+    const double slid = ball.state.position[0].norm();
+    if (holds) {
+      EXPECT_LT(slid, 1e-9);
+    }
+    // g (sin a - mu cos a) t^2 / 2
+    if (!holds) {
+      EXPECT_NEAR(slid, 5.0 * (std::sin(angle) - 0.5 * std::cos(angle)), 2e-3);
+    }
+  }
+}
+
+TEST(Ground, NodesThatStartBelowAreLifted) {
+  Ball ball(Vec3(0, -0.2, 0), Vec3::Zero(), 1.0, 0.0);
+  ball.step(1e-3);
+  EXPECT_EQ(ball.state.position[0].y(), 0.0);
+  std::vector<Vec3> x = {Vec3(1, -0.3, 2)};
+  EXPECT_EQ(lift_onto_ground(ball.model, x), 1);
+  EXPECT_EQ(x[0], Vec3(1, 0, 2));
+}
+
+}  // namespace
+}  // namespace sinew

@@ -1,0 +1,116 @@
+#include "sinew/solver/stable_step.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "sinew/base/error.h"
+#include "sinew/solver/verlet.h"
+#include "tests/support/models.h"
+
+namespace sinew {
+namespace {
+
+using test::point_masses;
+using test::tissue_box;
+
+// One free mass of 2 kg on a spring of 50 N/m: omega = 5 rad/s.
+Model oscillator(double c) {
+  Model m = point_masses({{Vec3(0, 0, 0), 0.0}, {Vec3(1, 0, 0), 2.0}});
+  add_attachment(m, 0, 1, 50.0, c, 1.0);
+  finish(m);
+  return m;
+}
+
+TEST(StableStep, UndampedOscillatorByHand) {
+  const Model m = oscillator(0.0);
+  Workspace w(m);
+  const StableStep s = find_stable_step(m, m.rest_position, w);
+  EXPECT_NEAR(s.step, 2.0 / 5.0, 1e-10);
+  EXPECT_NEAR(s.omega_max, 5.0, 1e-10);
+  EXPECT_EQ(s.zeta, 0.0);
+}
+
+TEST(StableStep, DampedOscillatorFollowsTheFormula) {
+  for (const double zeta : {0.1, 0.5, 1.0, 3.0}) {
+    const Model m = oscillator(2 * zeta * std::sqrt(50.0 * 2.0));
+    Workspace w(m);
+    const StableStep s = find_stable_step(m, m.rest_position, w);
+    EXPECT_NEAR(s.step, 2.0 / 5.0 * (std::sqrt(1 + zeta * zeta) - zeta), 1e-3 * s.step) << zeta;
+    EXPECT_NEAR(s.zeta, zeta, 1e-9);
+  }
+}
+
+TEST(StableStep, NothingThatMovesHasNoLimit) {
+  Model m = point_masses({{Vec3(0, 0, 0), 1.0}});
+  finish(m);
+  Workspace w(m);
+  EXPECT_TRUE(std::isinf(find_stable_step(m, m.rest_position, w).step));
+}
+
+// Whether the linear motion about rest stays small for many steps of length h.
+bool stays_bounded(const Model& m, double h) {
+  State s = initial_state(m);
+  for (std::size_t i = 0; i < s.position.size(); ++i) {
+    if (m.inverse_mass[i] == 0.0) continue;
+    const double sign = (i * 2654435761u >> 7) % 2 == 0 ? 1.0 : -1.0;
+    s.position[i] += sign * 1e-9 * Vec3(1.0, -0.7, 0.4);
+  }
+  Workspace w(m);
+  for (int i = 0; i < 3000; ++i) {
+    try {
+      verlet_step(m, h, s, w);
+    } catch (const Error&) {
+      return false;
+    }
+  }
+  double off = 0.0;
+  for (std::size_t i = 0; i < s.position.size(); ++i) {
+    off = std::max(off, (s.position[i] - m.rest_position[i]).norm());
+  }
+  return off < 1e-6;
+}
+
+TEST(StableStep, IsSharpOnTissueWithAndWithoutDamping) {
+  for (const double zeta : {0.0, 0.1, 1.0}) {
+    Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = zeta}, {3, 3, 3});
+    m.gravity = Vec3::Zero();
+    m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
+    finish(m);
+    Workspace w(m);
+    const double h = find_stable_step(m, m.rest_position, w).step;
+    EXPECT_TRUE(stays_bounded(m, 0.97 * h)) << zeta;
+    EXPECT_FALSE(stays_bounded(m, 1.05 * h)) << zeta;
+  }
+}
+
+TEST(StableStep, WatchingFromTheKnownModeFindsTheSameStep) {
+  Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.2}, {4, 4, 4});
+  finish(m);
+  Workspace w(m);
+  const StableStep found = find_stable_step(m, m.rest_position, w);
+  const StableStep watched = watch_stable_step(m, m.rest_position, 0.9 * found.step, found.mode, w);
+  EXPECT_NEAR(watched.step, found.step, 0.02 * found.step);
+}
+
+TEST(StableStep, StretchStiffensAndIsSeen) {
+  Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.0}, {4, 4, 4});
+  finish(m);
+  Workspace w(m);
+  const StableStep rest = find_stable_step(m, m.rest_position, w);
+  std::vector<Vec3> stretched = m.rest_position;
+  for (Vec3& p : stretched) p *= 3.0;
+  const double h = watch_stable_step(m, stretched, rest.step, rest.mode, w).step;
+  EXPECT_LT(h, 0.95 * rest.step);
+  EXPECT_NEAR(h, find_stable_step(m, stretched, w).step, 0.1 * h);
+}
+
+TEST(StableStep, DescribesTheStiffestSpring) {
+  const Model m = oscillator(3.0);
+  EXPECT_EQ(describe_spring(m, 0),
+            "spring 0 (body points, node 0 to body points, node 1): k = 50 N/m, l0 = 1 m, "
+            "c = 3 N s/m");
+}
+
+}  // namespace
+}  // namespace sinew

@@ -1,0 +1,70 @@
+// Small models for tests, put together by hand or from shapes.
+#pragma once
+
+#include <vector>
+
+#include "sinew/forces/assemble.h"
+#include "sinew/mesh/shapes.h"
+#include "sinew/model/model.h"
+
+namespace sinew::test {
+
+struct Point {
+  Vec3 position;
+  double mass = 1.0;  // [kg]; 0: held
+  Vec3 velocity = Vec3::Zero();
+};
+
+// Point masses without tets, as one body; no gravity. Add springs with add_attachment, or limits
+// with add_limited, then call finish().
+inline Model point_masses(const std::vector<Point>& points) {
+  Model m;
+  m.gravity = Vec3::Zero();
+  Body body;
+  body.name = "points";
+  body.nodes = {0, static_cast<Index>(points.size())};
+  Pin held{"held", {}, {}};
+  for (Index i = 0; i < body.nodes.end; ++i) {
+    const Point& p = points[uz(i)];
+    m.rest_position.push_back(p.position);
+    m.mass.push_back(p.mass);
+    m.drag.push_back(0.0);
+    m.start_velocity.push_back(p.velocity);
+    if (p.mass == 0.0) held.nodes.push_back(i);
+  }
+  if (!held.nodes.empty()) m.pins.push_back(held);
+  m.bodies.push_back(body);
+  return m;
+}
+
+// A spring with limits between two nodes.
+inline void add_limited(Model& m, Index a, Index b, double k, double l0, double stretch,
+                        double compress) {
+  add_attachment(m, a, b, k, 0.0, l0);
+  m.stretch_limit.back() = stretch;
+  m.compress_limit.back() = compress;
+}
+
+// A box of tissue of one material.
+inline Model tissue_box(const Material& material, const std::array<int, 3>& cells,
+                        const Vec3& size = Vec3(0.1, 0.1, 0.1)) {
+  BodySpec spec;
+  spec.name = "box";
+  spec.mesh = box(size, cells);
+  spec.materials = {material};
+  spec.regions = {"all"};
+  Model m;
+  add_body(m, spec);
+  return m;
+}
+
+// Nodes whose coordinate along `axis` is within 1e-9 of `value`.
+inline std::vector<Index> nodes_at(const Model& m, int axis, double value) {
+  std::vector<Index> nodes;
+  for (Index i = 0; i < m.body_node_count(); ++i) {
+    if (std::abs(m.rest_position[uz(i)][axis] - value) < 1e-9) nodes.push_back(i);
+  }
+  return nodes;
+}
+
+}  // namespace sinew::test
