@@ -7,7 +7,7 @@ import meshio
 import numpy as np
 
 # Unit of the arrays that a run writes; others get none.
-UNITS = {"displacement": "m", "velocity": "m/s", "force": "N", "pressure": "Pa", "stretch": ""}
+UNITS = {"displacement": "m", "velocity": "m/s"}
 
 
 class PictureError(Exception):

@@ -1,0 +1,46 @@
+# bash completion for sinew. Load it in one of these ways:
+#   source <(sinew completion bash)
+#   sinew completion bash > ~/.local/share/bash-completion/completions/sinew
+
+_sinew_files() {  # words that end like this, and folders to go on into
+  local extension
+  for extension in "$@"; do
+    mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -X "!*.$extension" -- "$cur")
+  done
+  mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -d -- "$cur")
+  compopt -o filenames 2>/dev/null
+}
+
+_sinew_words() {
+  mapfile -t COMPREPLY < <(compgen -W "$1" -- "$cur")
+}
+
+_sinew() {
+  local cur=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD - 1]}
+  local meshes=(mesh msh vtk vtu node ele)
+  COMPREPLY=()
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    _sinew_words "run resume info convert completion --help --version"
+    return
+  fi
+  case ${COMP_WORDS[1]}:$previous in
+    run:-o | run:--out)
+      mapfile -t COMPREPLY < <(compgen -d -- "$cur")
+      compopt -o filenames 2>/dev/null
+      return
+      ;;
+    *:--threads | *:--set | *:--scale) return ;;
+  esac
+  case ${COMP_WORDS[1]}:$cur in
+    run:-*) _sinew_words "-o --out --set --force --no-output --json -q --quiet --threads --help" ;;
+    resume:-*) _sinew_words "--json -q --quiet --threads --help" ;;
+    info:-*) _sinew_words "--scale --json --help" ;;
+    convert:-*) _sinew_words "--scale --help" ;;
+    run:*) _sinew_files toml ;;
+    resume:*) _sinew_files ;;
+    info:* | convert:*) _sinew_files "${meshes[@]}" ;;
+    completion:*) _sinew_words "bash zsh fish --help" ;;
+  esac
+}
+
+complete -F _sinew sinew

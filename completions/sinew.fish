@@ -1,0 +1,35 @@
+# fish completion for sinew. Load it in one of these ways:
+#   sinew completion fish | source
+#   sinew completion fish > ~/.config/fish/completions/sinew.fish
+
+complete -c sinew -f
+complete -c sinew -n __fish_use_subcommand -l help -d 'Show help'
+complete -c sinew -n __fish_use_subcommand -l version -d 'Show the version'
+complete -c sinew -n __fish_use_subcommand -a run -d 'Run a scene into a folder'
+complete -c sinew -n __fish_use_subcommand -a resume -d 'Go on with a run from its checkpoint'
+complete -c sinew -n __fish_use_subcommand -a info -d 'Examine a mesh'
+complete -c sinew -n __fish_use_subcommand -a convert -d 'Convert between mesh formats'
+complete -c sinew -n __fish_use_subcommand -a completion -d 'Print a shell completion'
+
+set -l run '__fish_seen_subcommand_from run'
+complete -c sinew -n $run -a '(__fish_complete_suffix .toml)'
+complete -c sinew -n $run -s o -l out -x -a '(__fish_complete_directories)' -d 'Folder to write'
+complete -c sinew -n $run -l set -x -d 'Override a value: KEY=VALUE'
+complete -c sinew -n $run -l force -d 'Replace the run that --out holds'
+complete -c sinew -n $run -l no-output -d 'Write no folder'
+
+set -l running '__fish_seen_subcommand_from run resume'
+complete -c sinew -n $running -l json -d 'Print summary.json'
+complete -c sinew -n $running -s q -l quiet -d 'Print errors only'
+complete -c sinew -n $running -l threads -x -d 'Threads to use'
+complete -c sinew -n '__fish_seen_subcommand_from resume' -a '(__fish_complete_directories)'
+
+set -l meshes '__fish_seen_subcommand_from info convert'
+for suffix in .mesh .msh .vtk .vtu .node .ele
+    complete -c sinew -n $meshes -a "(__fish_complete_suffix $suffix)"
+end
+complete -c sinew -n $meshes -l scale -x -d 'Factor for the coordinates: 0.001 for mm'
+complete -c sinew -n '__fish_seen_subcommand_from info' -l json -d 'Print JSON'
+complete -c sinew -n '__fish_seen_subcommand_from completion' -a 'bash zsh fish'
+set -l any '__fish_seen_subcommand_from run resume info convert completion'
+complete -c sinew -n $any -l help -d 'Show help'

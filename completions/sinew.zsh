@@ -1,0 +1,54 @@
+#compdef sinew
+# zsh completion for sinew. Put it where zsh looks for completions, under the name _sinew:
+#   sinew completion zsh > "${fpath[1]}/_sinew"
+
+_sinew() {
+  local context state line
+  local -a meshes=('*.(mesh|msh|vtk|vtu|node|ele)(-.)' '*(-/)')
+  _arguments -C '--help[Show help]' '--version[Show the version]' '1:command:->command' '*::args:->args'
+  case $state in
+    command)
+      local -a commands=(
+        'run:Run a scene into a folder'
+        'resume:Go on with a run from its last checkpoint'
+        'info:Examine a mesh'
+        'convert:Convert between mesh formats'
+        'completion:Print a shell completion'
+      )
+      _describe command commands
+      ;;
+    args)
+      case $line[1] in
+        run)
+          _arguments '(-o --out)'{-o,--out}'[Folder to write]:folder:_files -/' \
+            '*--set[Override a value]:KEY=VALUE:' \
+            '--force[Replace the run that --out holds]' \
+            '--no-output[Write no folder]' \
+            '--json[Print summary.json]' \
+            '(-q --quiet)'{-q,--quiet}'[Print errors only]' \
+            '--threads[Threads to use]:count:' \
+            '--help[Show help]' \
+            '1:scene:_files -g "*.toml(-.)"'
+          ;;
+        resume)
+          _arguments '--json[Print summary.json]' \
+            '(-q --quiet)'{-q,--quiet}'[Print errors only]' \
+            '--threads[Threads to use]:count:' \
+            '--help[Show help]' \
+            '1:folder:_files -/'
+          ;;
+        info)
+          _arguments '--scale[Factor from the unit of the file to metres]:factor:' \
+            '--json[Print JSON]' '--help[Show help]' '1:mesh:_files -g "$meshes"'
+          ;;
+        convert)
+          _arguments '--scale[Factor for the coordinates]:factor:' '--help[Show help]' \
+            '1:mesh:_files -g "$meshes"' '2:mesh:_files -g "$meshes"'
+          ;;
+        completion) _arguments '--help[Show help]' '1:shell:(bash zsh fish)' ;;
+      esac
+      ;;
+  esac
+}
+
+if [ "$funcstack[1]" = _sinew ]; then _sinew "$@"; else compdef _sinew sinew; fi
