@@ -41,10 +41,7 @@ std::string read_file(const fs::path& path) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
   if (status.type() == fs::file_type::not_found) {
-    throw Error(ErrorKind::input, "no such file",
-                fmt::format("check the name; paths are relative to {}",
-                            path.is_absolute() ? "the root folder" : "the current folder"),
-                where);
+    throw Error(ErrorKind::input, "no such file", "check the name and the folder", where);
   }
   if (code) fail_read(path, code.value());
   if (fs::is_directory(status)) {

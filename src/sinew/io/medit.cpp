@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "sinew/base/text.h"
 #include "sinew/io/cells.h"
 #include "sinew/io/text_reader.h"
 
@@ -163,7 +164,7 @@ void MeditParser::section_without_geometry(std::string_view keyword) {
     reader_.skip_values(count * section.values, {"a value", section.keyword});
     return;
   }
-  const std::string_view meant = nearest(keyword, all_keywords());
+  const std::string meant = nearest(keyword, all_keywords());
   reader_.fail(
       fmt::format("expected a section, found {}", quoted(keyword)),
       meant.empty()

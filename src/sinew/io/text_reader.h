@@ -5,7 +5,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -96,8 +95,5 @@ class TextReader {
 std::string to_text(const Wanted& wanted);
 // A word of a file, quoted for a message: bytes that do not print become \xNN, long ones are cut.
 std::string quoted(std::string_view word);
-// The candidate that word was probably meant to be (a typing slip or two away, case ignored), or
-// empty.
-std::string_view nearest(std::string_view word, std::span<const std::string_view> candidates);
 
 }  // namespace sinew::io

@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "sinew/base/text.h"
 #include "sinew/io/cells.h"
 #include "sinew/io/vtk.h"
 #include "sinew/io/vtk_grid.h"
@@ -137,7 +138,7 @@ void VtkParser::section(std::string_view keyword) {
     constexpr std::array<std::string_view, 10> known = {
         "POINTS", "CELLS",    "CELL_TYPES", "POINT_DATA",   "CELL_DATA",
         "FIELD",  "METADATA", "SCALARS",    "LOOKUP_TABLE", "VECTORS"};
-    const std::string_view meant = nearest(keyword, known);
+    const std::string meant = nearest(keyword, known);
     text_.fail(fmt::format("expected a section, found {}", quoted(keyword)),
                meant.empty() ? std::string("a count before it may be too small; otherwise remove "
                                            "this section")

@@ -21,6 +21,9 @@ constexpr std::array scalar_names = {
     ScalarName{"INT", Scalar::i32},          ScalarName{"UNSIGNED_INT", Scalar::u32},
     ScalarName{"LONG", Scalar::i64},         ScalarName{"UNSIGNED_LONG", Scalar::u64},
     ScalarName{"VTKIDTYPE", Scalar::i32},  // written as int by VTK
+    ScalarName{"VTKTYPEINT8", Scalar::i8},   ScalarName{"VTKTYPEUINT8", Scalar::u8},
+    ScalarName{"VTKTYPEINT16", Scalar::i16}, ScalarName{"VTKTYPEUINT16", Scalar::u16},
+    ScalarName{"VTKTYPEINT32", Scalar::i32}, ScalarName{"VTKTYPEUINT32", Scalar::u32},
     ScalarName{"VTKTYPEINT64", Scalar::i64}, ScalarName{"VTKTYPEUINT64", Scalar::u64},
     ScalarName{"FLOAT", Scalar::f32},        ScalarName{"DOUBLE", Scalar::f64},
 };
