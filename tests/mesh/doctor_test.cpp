@@ -186,7 +186,8 @@ TEST(Doctor, NonManifoldEdge) {
   mesh.nodes.emplace_back(0, -1, 0);
   mesh.tets.push_back({0, 4, 5, 3});  // touches tet 0 along the edge 0 3
   expect_problem(mesh, ProblemKind::non_manifold_edge, Severity::warning,
-                 "1 non-manifold edge (0-3): the surface touches itself along it");
+                 "1 non-manifold edge (0-3): the surface touches itself along it, so parts turn "
+                 "about it like a hinge");
 }
 
 TEST(Doctor, NonManifoldNode) {
@@ -196,7 +197,8 @@ TEST(Doctor, NonManifoldNode) {
   mesh.nodes.emplace_back(0, 0, -1);
   mesh.tets.push_back({0, 5, 4, 6});  // touches tet 0 at node 0
   expect_problem(mesh, ProblemKind::non_manifold_vertex, Severity::warning,
-                 "1 non-manifold node (0): the surface touches itself there");
+                 "1 non-manifold node (0): the surface touches itself there, so parts turn about "
+                 "it like a joint");
 }
 
 TEST(Doctor, LooseFace) {

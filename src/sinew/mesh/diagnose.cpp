@@ -250,8 +250,9 @@ void Doctor::check_surface(const FaceTable& faces, std::span<const Tet> tets) {
     edge = next;
   }
   report(ProblemKind::non_manifold_edge, Severity::warning, finds, "non-manifold edge",
-         "non-manifold edges", "the surface touches itself along it",
-         "parts that meet at an edge only turn about it like a hinge");
+         "non-manifold edges",
+         "the surface touches itself along it, so parts turn about it like a hinge",
+         "none needed; a finer mesh may part or join them");
   check_vertices(triangles);
 }
 
@@ -296,8 +297,9 @@ void Doctor::check_vertices(std::span<const Triangle> triangles) {
     begin = end;
   }
   report(ProblemKind::non_manifold_vertex, Severity::warning, finds, "non-manifold node",
-         "non-manifold nodes", "the surface touches itself there",
-         "parts that meet at a node only turn about it like a joint");
+         "non-manifold nodes",
+         "the surface touches itself there, so parts turn about it like a joint",
+         "none needed; a finer mesh may part or join them");
 }
 
 void Doctor::check_nodes() {
