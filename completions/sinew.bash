@@ -29,13 +29,17 @@ _sinew() {
       compopt -o filenames 2>/dev/null
       return
       ;;
+    convert:--format)
+      _sinew_words "gmsh41 gmsh41-binary gmsh22 gmsh22-binary ascii binary zlib base64"
+      return
+      ;;
     *:--threads | *:--set | *:--scale) return ;;
   esac
   case ${COMP_WORDS[1]}:$cur in
     run:-*) _sinew_words "-o --out --set --force --no-output --json -q --quiet --threads --help" ;;
     resume:-*) _sinew_words "--json -q --quiet --threads --help" ;;
     info:-*) _sinew_words "--scale --json --help" ;;
-    convert:-*) _sinew_words "--scale --help" ;;
+    convert:-*) _sinew_words "--scale --repair --format --force --help" ;;
     run:*) _sinew_files toml ;;
     resume:*) _sinew_files ;;
     info:* | convert:*) _sinew_files "${meshes[@]}" ;;

@@ -29,6 +29,11 @@ for suffix in .mesh .msh .vtk .vtu .node .ele
     complete -c sinew -n $meshes -a "(__fish_complete_suffix $suffix)"
 end
 complete -c sinew -n $meshes -l scale -x -d 'Factor for the coordinates: 0.001 for mm'
+set -l convert '__fish_seen_subcommand_from convert'
+complete -c sinew -n $convert -l repair -d 'Turn inverted tets, drop unreferenced nodes'
+complete -c sinew -n $convert -l format -x -d 'Variant of the format' \
+    -a 'gmsh41 gmsh41-binary gmsh22 gmsh22-binary ascii binary zlib base64'
+complete -c sinew -n $convert -l force -d 'Replace existing files'
 complete -c sinew -n '__fish_seen_subcommand_from info' -l json -d 'Print JSON'
 complete -c sinew -n '__fish_seen_subcommand_from completion' -a 'bash zsh fish'
 set -l any '__fish_seen_subcommand_from run resume info convert completion'

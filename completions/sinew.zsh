@@ -42,7 +42,10 @@ _sinew() {
             '--json[Print JSON]' '--help[Show help]' '1:mesh:_files -g "$meshes"'
           ;;
         convert)
-          _arguments '--scale[Factor for the coordinates]:factor:' '--help[Show help]' \
+          _arguments '--scale[Factor for the coordinates]:factor:' \
+            '--repair[Turn inverted tets, drop unreferenced nodes]' \
+            '--format[Variant of the format]:variant:(gmsh41 gmsh41-binary gmsh22 gmsh22-binary ascii binary zlib base64)' \
+            '--force[Replace existing files]' '--help[Show help]' \
             '1:mesh:_files -g "$meshes"' '2:mesh:_files -g "$meshes"'
           ;;
         completion) _arguments '--help[Show help]' '1:shell:(bash zsh fish)' ;;

@@ -204,7 +204,7 @@ class Studio:
     """Lights and ground around a subject, seen by one camera; renders linear RGB on white."""
 
     GHOST = np.array([0.16, 0.20, 0.26])
-    KEY, FILL, RIM, SKY, GLOSS = 0.86, 0.20, 0.10, 0.50, 0.07
+    KEY, FILL, RIM, SKY, GLOSS = 0.84, 0.24, 0.10, 0.56, 0.08
     GROUND_CELLS = 160
 
     def __init__(self, camera, ground):
@@ -235,7 +235,7 @@ class Studio:
         sky = occluder.visibility(np.concatenate([points + 2 * bias * normals, spots]),
                                   dome(80), bias)
         image = self._ground_image(occluder, key[len(position):], sky[len(points):])
-        ambient = seen.interpolate(triangles, 0.15 + 0.85 * sky[:len(points)])
+        ambient = seen.interpolate(triangles, 0.30 + 0.70 * sky[:len(points)])
         color = seen.interpolate(triangles, albedo)
         image[seen.mask] = self._shade(position, n, color, key[:len(position)], ambient)
         if edges > 0:
@@ -251,7 +251,7 @@ class Studio:
             return np.clip(np.sum(n * direction, axis=1), 0, None)
 
         light = (self.KEY * key * toward(self.key) + self.FILL * toward(self.fill) +
-                 self.SKY * ambient * (0.62 + 0.38 * n[:, 1]))
+                 self.SKY * ambient * (0.70 + 0.30 * n[:, 1]))
         white = (self.GLOSS * key * toward(normalized(self.key + to_eye)) ** 50 +
                  self.RIM * toward(self.rim) * (1 - toward(to_eye)) ** 3)
         return color * light[:, None] + white[:, None]
@@ -288,16 +288,14 @@ class Studio:
         return np.repeat(1 - shadow[..., None], 3, axis=2)
 
     def _draw_ghost(self, image, seen, points, triangles):
-        """A glass shell: clear where it faces the camera, darker towards its outline."""
+        """A glass shell around the subject: clear where it faces the camera, darker at its rim."""
         ghost = Visible(self.camera, points, triangles)
         n = normalized(ghost.interpolate(triangles, vertex_normals(points, triangles)))
-        position = ghost.interpolate(triangles, points)
-        to_eye = normalized(self.camera.eye - position)
-        facing = np.clip(np.einsum("ij,ij->i", n, to_eye), 0, 1)
+        to_eye = normalized(self.camera.eye - ghost.interpolate(triangles, points))
+        facing = np.clip(np.sum(n * to_eye, axis=1), 0, 1)
         alpha = np.zeros(ghost.mask.shape)
-        alpha[ghost.mask] = 0.05 + 0.40 * (1 - facing) ** 3
-        alpha[ghost.depth > seen.depth] = 0.0
-        alpha = np.maximum(alpha, 0.65 * self._outline(ghost.mask) * ~seen.mask)
+        alpha[ghost.mask] = 0.06 + 0.40 * (1 - facing) ** 3
+        alpha = np.maximum(alpha, 0.65 * self._outline(ghost.mask)) * ~seen.mask
         image[:] = image * (1 - alpha[..., None]) + self.GHOST * alpha[..., None]
 
     @staticmethod
