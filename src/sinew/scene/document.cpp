@@ -220,7 +220,9 @@ DocValue parse_document(std::string_view text, const std::string& file_name) {
                 "is this a scene? meshes belong into files of their own", {file_name, 0, 0});
   DepthCheck(text, file_name).run();
   try {
-    return convert_table(toml::parse(text, file_name), file_name);
+    DocValue root = convert_table(toml::parse(text, file_name), file_name);
+    root.where.file = file_name;
+    return root;
   } catch (const toml::parse_error& error) {
     throw Error(ErrorKind::input, std::string(error.description()),
                 "scenes are TOML: strings in quotes, key = value, [table] (docs/scene-format.md)",

@@ -55,6 +55,7 @@ KeyTables make_tables() {
              "the top level",
              {
                  text("name", "the file's name"),
+                 text("base", "the scene file's folder"),
                  text("title"),
                  text("look_for"),
                  number("duration", "s", "2", positive),
@@ -140,7 +141,7 @@ KeyTables make_tables() {
                   other("sphere", T::table),
                   other("half_space", T::table),
                   word("side", "", "-x +x -y +y -z +z"),
-                  number("depth", "m", "1e-6 of the diagonal", not_negative),
+                  number("depth", "m", "the diagonal times 1e-6", not_negative),
                   other("nodes", T::integers, "", "", from_to(0, 2147483647)),
                   point("nearest", "m"),
                   boolean("surface", "false"),

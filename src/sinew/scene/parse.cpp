@@ -23,7 +23,7 @@ void check_name(const DocEntry& entry, std::string_view kind) {
     throw Error(ErrorKind::input,
                 fmt::format("'{}' cannot name a {}; expected 1 to 64 letters, digits, '_' or '-'",
                             entry.key.substr(0, 64), kind),
-                "", entry.where);
+                "names become parts of file names and of --set keys", entry.where);
 }
 
 // Reads every entry of a table of named tables, [kind.NAME].
@@ -48,6 +48,7 @@ Scene parse_root(const DocValue& document) {
   const Reader root(document, "the scene", {&key_tables().scene});
   Scene scene;
   root.text("name", scene.name);
+  root.text("base", scene.base);
   root.text("title", scene.title);
   root.text("look_for", scene.look_for);
   root.number("duration", scene.duration);
@@ -84,6 +85,18 @@ Scene parse_root(const DocValue& document) {
   return scene;
 }
 
+// Sets a key of the top level, as its first one where it is new.
+void set_text(DocValue& document, const std::string& key, const std::string& text) {
+  DocEntry entry{key, {}, document.where};
+  entry.value.type = DocValue::Type::text;
+  entry.value.text = text;
+  if (DocValue* present = document.find(key)) {
+    present->text = text;
+  } else {
+    document.entries.insert(document.entries.begin(), entry);
+  }
+}
+
 }  // namespace
 
 Scene parse_scene(std::string_view text, const std::string& file_name,
@@ -93,9 +106,19 @@ Scene parse_scene(std::string_view text, const std::string& file_name,
   Scene scene = parse_root(document);
   if (scene.name.empty()) scene.name = std::filesystem::path(file_name).stem().string();
   scene.file = file_name;
-  scene.base = base.string();
+  scene.base = (scene.base.empty() ? base : base / scene.base).string();
+  // The document says what runs, not where its files lie: the same scene has the same document in
+  // every folder and under every file name.
+  std::erase_if(document.entries, [](const DocEntry& e) { return e.key == "base"; });
+  set_text(document, "name", scene.name);
   scene.document = write_document(document);
   return scene;
+}
+
+std::string document_with_base(const Scene& scene) {
+  DocValue document = parse_document(scene.document, scene.file);
+  set_text(document, "base", std::filesystem::absolute(scene.base).string());
+  return write_document(document);
 }
 
 Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

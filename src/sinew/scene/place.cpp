@@ -44,7 +44,8 @@ fs::path shown(const fs::path& path) {
 TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source) {
   const fs::path path = fs::path(scene.base) / body.mesh;
   std::error_code failed;
-  if (!fs::exists(path, failed)) refuse_missing(body, path);
+  const fs::path tetgen = path.string() + ".node";  // TetGen's pair goes by its stem
+  if (!fs::exists(path, failed) && !fs::exists(tetgen, failed)) refuse_missing(body, path);
   source = shown(path).string();
   return io::read_mesh(source);
 }

@@ -68,15 +68,18 @@ const Key& Reader::key_of(std::string_view key) const {
   throw Error(ErrorKind::internal, fmt::format("no key table of {} has '{}'", name_, key));
 }
 
+std::string Reader::hint(const Key& key) const {
+  if (key.default_value.empty() || key.default_value.starts_with("the "))
+    return fmt::format("docs/scene-format.md says what '{}' takes", key.name);
+  return fmt::format("the default is {} = {}", key.name, key.default_value);
+}
+
 void Reader::wrong_type(const Key& key, const DocValue& value) const {
   const bool item = table_.find(key.name) != &value;
   const std::string message =
       fmt::format("{} {} {}; expected {}", called(key.name), item ? "holds" : "is", describe(value),
                   with_unit(type_text(key), key.unit));
-  std::string remedy;
-  if (!key.default_value.empty() && key.default_value.find("the ") != 0)
-    remedy = fmt::format("the default is {} = {}", key.name, key.default_value);
-  throw Error(ErrorKind::input, message, remedy, value.where);
+  throw Error(ErrorKind::input, message, hint(key), value.where);
 }
 
 double Reader::in_range(const Key& key, double value, const DocValue& at) const {
@@ -88,7 +91,7 @@ double Reader::in_range(const Key& key, double value, const DocValue& at) const 
       fmt::format(
           "{} {} {}; expected {}", called(key.name), item ? "holds" : "is", describe(at),
           range.empty() ? with_unit("a finite number", key.unit) : with_unit(range, key.unit)),
-      "", at.where);
+      hint(key), at.where);
 }
 
 double Reader::number_of(const Key& key, const DocValue& value) const {
@@ -100,13 +103,13 @@ double Reader::number_of(const Key& key, const DocValue& value) const {
 
 int Reader::integer_of(const Key& key, const DocValue& value) const {
   if (value.type != Type::integer) wrong_type(key, value);
+  in_range(key, static_cast<double>(value.integer), value);
   if (value.integer < std::numeric_limits<int>::min() ||
       value.integer > std::numeric_limits<int>::max())
     throw Error(
         ErrorKind::input,
         fmt::format("{} is {}; expected an integer of 32 bits", called(key.name), value.integer),
-        "", value.where);
-  in_range(key, static_cast<double>(value.integer), value);
+        hint(key), value.where);
   return static_cast<int>(value.integer);
 }
 
@@ -164,7 +167,7 @@ std::optional<std::string> Reader::word(std::string_view key) const {
   throw Error(ErrorKind::input,
               fmt::format("{} is {}; expected {}{}", called(key), describe(*value),
                           with_unit(type_text(k), k.unit), did_you_mean(value->text, words)),
-              "", value->where);
+              hint(k), value->where);
 }
 
 std::vector<double> Reader::numbers(std::string_view key) const {

@@ -58,6 +58,8 @@ class Reader {
  private:
   const Key& key_of(std::string_view key) const;
   void refuse_unknown() const;
+  // What a message says about a value that cannot be used.
+  std::string hint(const Key& key) const;
   [[noreturn]] void wrong_type(const Key& key, const DocValue& value) const;
   double in_range(const Key& key, double value, const DocValue& where) const;
   double number_of(const Key& key, const DocValue& value) const;

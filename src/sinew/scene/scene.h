@@ -169,4 +169,7 @@ Scene parse_scene(std::string_view text, const std::string& file_name,
                   const std::filesystem::path& base,
                   const std::vector<std::string>& overrides = {});
 
+// Scene::document with the key `base` in it: a file that runs the same scene from any folder.
+std::string document_with_base(const Scene& scene);
+
 }  // namespace sinew

@@ -1,0 +1,341 @@
+#include "sinew/scene/build.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <numeric>
+
+#include "tests/scene/support.h"
+
+namespace sinew {
+namespace {
+
+using test::build_error;
+using test::error_of;
+using test::parse;
+
+Model build(std::string_view text, const std::vector<std::string>& overrides = {}) {
+  return build_model(parse(text, overrides));
+}
+
+double sum(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+// A folder that goes with the test.
+class Folder {
+ public:
+  Folder()
+      : path_(std::filesystem::temp_directory_path() /
+              ("sinew_" +
+               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
+               std::to_string(::getpid()))) {
+    std::filesystem::create_directories(path_);
+  }
+  ~Folder() { std::filesystem::remove_all(path_); }
+  void write(const std::string& name, const std::string& text) const {
+    std::ofstream(path_ / name) << text;
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// Node 0 (from 0) is in no tet, tet 1 (label 7) is turned inside out, face label 5.
+constexpr const char* kMesh = R"(MeshVersionFormatted 1
+Dimension 3
+Vertices
+6
+9 9 9 0
+0 0 0 1
+1 0 0 1
+0 1 0 1
+0 0 1 2
+0 0 -1 3
+Triangles
+1
+2 3 4 5
+Tetrahedra
+2
+2 3 4 5 4
+2 3 4 6 7
+End
+)";
+
+TEST(Build, BeamIsTheWorkload) {
+  const Scene scene = load_scene(SINEW_SOURCE_DIR "/scenes/beam.toml");
+  BuildReport report;
+  const Model m = build_model(scene, &report);
+  EXPECT_EQ(m.node_count(), 5 * 5 * 17);
+  EXPECT_EQ(m.tet_count(), 1280);
+  EXPECT_EQ(m.spring_count(), 1992);
+  ASSERT_EQ(m.bodies.size(), 1U);
+  EXPECT_EQ(m.bodies[0].name, "beam");
+  EXPECT_EQ(m.bodies[0].laws, "lloyd");
+  EXPECT_NEAR(m.bodies[0].rest_volume, 0.004, 1e-15);
+  EXPECT_NEAR(sum(m.mass), 4.24, 1e-12);
+  for (int l = 0; l < 17; ++l)
+    for (int j = 0; j < 5; ++j)
+      for (int i = 0; i < 5; ++i) {
+        const Vec3 X(i * 0.025 - 0.05, j * 0.025 - 0.05, l * 0.025);
+        const auto node = static_cast<std::size_t>((l * 5 + j) * 5 + i);
+        EXPECT_NEAR((m.rest_position[node] - X).norm(), 0.0, 1e-15);
+      }
+  ASSERT_EQ(m.pins.size(), 1U);
+  ASSERT_EQ(m.pins[0].nodes.size(), 25U);
+  for (std::size_t i = 0; i < 25; ++i) EXPECT_EQ(m.pins[0].nodes[i], static_cast<Index>(i));
+  ASSERT_EQ(m.probes.size(), 1U);
+  EXPECT_EQ(m.probes[0].name, "tip");
+  ASSERT_EQ(m.probes[0].nodes.size(), 25U);
+  EXPECT_EQ(m.probes[0].nodes.front(), 400);
+  EXPECT_EQ(m.probes[0].nodes.back(), 424);
+  EXPECT_EQ(scene.bodies[0].material.young, 15e3);
+  EXPECT_EQ(scene.bodies[0].material.poisson, 0.45);
+  ASSERT_EQ(report.bodies.size(), 1U);
+  EXPECT_EQ(report.bodies[0].mesh, "shape beam");
+  EXPECT_EQ(report.bodies[0].tets, 1280);
+  EXPECT_TRUE(report.bodies[0].warnings.empty());
+}
+
+TEST(Build, BeamScalesByOverrides) {
+  const Scene scene = load_scene(SINEW_SOURCE_DIR "/scenes/beam.toml",
+                                 {"beam.cells=[8,8,32]", "beam.young=1.5e6", "beam.law=uniform"});
+  const Model m = build_model(scene);
+  EXPECT_EQ(m.tet_count(), 10240);
+  EXPECT_EQ(m.bodies[0].laws, "uniform");
+  EXPECT_EQ(m.stiffness[0], 2e5);
+  EXPECT_EQ(m.probes[0].nodes.size(), 81U);
+}
+
+TEST(Build, PlacesScalesAndTurns) {
+  const Model m = build(R"(
+[body.b]
+shape = "beam"
+size = [100, 200, 400]
+cells = [1, 1, 1]
+scale = 0.001
+center = true
+rotation = [0, 90, 0]
+position = [1, 2, 3]
+velocity = [0, 0, 1]
+spin = [0, 2, 0]
+density = 1000
+)");
+  Vec3 low = m.rest_position[0];
+  Vec3 high = low;
+  for (const Vec3& x : m.rest_position) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  EXPECT_TRUE(low.isApprox(Vec3(0.8, 1.9, 2.95), 1e-12));  // z became x
+  EXPECT_TRUE(high.isApprox(Vec3(1.2, 2.1, 3.05), 1e-12));
+  EXPECT_NEAR(m.bodies[0].rest_volume, 0.008, 1e-15);
+  EXPECT_NEAR(sum(m.mass), 8.0, 1e-12);
+  Vec3 momentum = Vec3::Zero();
+  for (std::size_t i = 0; i < m.mass.size(); ++i) momentum += m.mass[i] * m.start_velocity[i];
+  EXPECT_TRUE(momentum.isApprox(Vec3(0, 0, 8), 1e-12));
+}
+
+TEST(Build, EveryShape) {
+  const double pi = std::numbers::pi;
+  const auto volume = [](const std::string& shape) {
+    return build("[body.b]\n" + shape).bodies[0].rest_volume;
+  };
+  EXPECT_NEAR(volume("shape = \"beam\"\n"), 0.004, 1e-12);
+  EXPECT_NEAR(volume("shape = \"box\"\n"), 0.004, 1e-12);
+  EXPECT_NEAR(volume("shape = \"sphere\"\nradius = 0.1\nresolution = 8\n"), 4e-3 / 3 * pi, 6e-5);
+  EXPECT_NEAR(volume("shape = \"ellipsoid\"\nradii = [0.1, 0.2, 0.3]\nresolution = 8\n"), 8e-3 * pi,
+              3e-4);
+  EXPECT_NEAR(volume("shape = \"cylinder\"\nradius = 0.1\nheight = 0.3\nresolution = 8\n"),
+              3e-3 * pi, 3e-5);
+}
+
+TEST(Build, MapsLabelsToRegions) {
+  const Folder folder;
+  folder.write("two.mesh", kMesh);
+  const auto build_here = [&](const std::string& text) {
+    return build_model(parse_scene("[body.b]\nmesh = \"two.mesh\"\ncenter = true\n" + text,
+                                   "scene.toml", folder.path()));
+  };
+  const Model m = build_here("density = 6\n[body.b.region.seven]\nlabel = 7\ndensity = 12\n");
+  EXPECT_EQ(m.bodies[0].regions, (std::vector<std::string>{"seven", "rest"}));
+  EXPECT_EQ(m.tet_region, (std::vector<int>{1, 0}));
+  EXPECT_NEAR(sum(m.mass), 1.0 + 2.0, 1e-12);
+  const Model all = build_here("[body.b.region.both]\nlabels = [4, 7]\nlaw = \"uniform\"\n");
+  EXPECT_EQ(all.bodies[0].regions, (std::vector<std::string>{"both"}));
+  EXPECT_EQ(all.bodies[0].laws, "uniform");
+  EXPECT_EQ(error_of([&] { build_here("[body.b.region.a]\nlabel = 5\n"); }),
+            "scene.toml:5:9: [body.b.region.a] covers label 5, which the mesh does not have\n"
+            "  remedy: its tets have the labels: 4, 7");
+}
+
+TEST(Build, RepairsAndKeepsTheFilesNodeIds) {
+  const Folder folder;
+  folder.write("two.mesh", kMesh);
+  const auto scene = [&](const std::string& select) {
+    return parse_scene("[body.b]\nmesh = \"two.mesh\"\n[probe.p]\nselect = " + select + "\n",
+                       "scene.toml", folder.path());
+  };
+  BuildReport report;
+  const Model m = build_model(scene("{ nodes = [5, 1] }"), &report);
+  EXPECT_EQ(m.node_count(), 5);
+  EXPECT_EQ(m.probes[0].nodes, (std::vector<Index>{0, 4}));
+  EXPECT_EQ(m.rest_position[4], Vec3(0, 0, -1));
+  ASSERT_EQ(report.bodies.size(), 1U);
+  std::string warnings;
+  for (const std::string& w : report.bodies[0].warnings) warnings += w + "\n";
+  EXPECT_NE(warnings.find("repaired: 1 "), std::string::npos) << warnings;
+  const auto nodes = [&](const std::string& select) {
+    return build_model(scene(select)).probes[0].nodes;
+  };
+  EXPECT_EQ(nodes("{ label = 7 }"), (std::vector<Index>{0, 1, 2, 4}));
+  EXPECT_EQ(nodes("{ face_label = 5 }"), (std::vector<Index>{0, 1, 2}));
+  EXPECT_EQ(nodes("{ node_label = 3 }"), (std::vector<Index>{4}));
+  EXPECT_EQ(nodes("{ label = 4, node_label = 1 }"), (std::vector<Index>{0, 1, 2}));
+  const auto error = [&](const std::string& select) {
+    return error_of([&] { build_model(scene(select)); });
+  };
+  EXPECT_EQ(error("{ nodes = [0] }"),
+            "scene.toml:4:10: 'select' of [probe.p] names node 0 of body 'b', which no tet has\n"
+            "  remedy: name a node of a tet");
+  EXPECT_EQ(error("{ nodes = [6] }"),
+            "scene.toml:4:10: 'select' of [probe.p] names node 6; the mesh of body 'b' has nodes 0 "
+            "to 5\n  remedy: ids count from 0, in the order of the mesh file");
+  EXPECT_EQ(error("{ label = 5 }"),
+            "scene.toml:4:10: 'select' of [probe.p] wants label = 5, which body 'b' does not have\n"
+            "  remedy: its mesh has label 4, 7");
+  EXPECT_EQ(error("{ face_label = 1 }"),
+            "scene.toml:4:10: 'select' of [probe.p] wants face_label = 1, which body 'b' does not "
+            "have\n  remedy: its mesh has face_label 5");
+}
+
+TEST(Build, SelectsByPlace) {
+  const auto nodes = [](const std::string& select) {
+    return build(
+               "[body.b]\nshape = \"box\"\nsize = [2, 2, 2]\ncells = [2, 2, 2]\n[probe.p]\nselect "
+               "= " +
+               select + "\n")
+        .probes[0]
+        .nodes;
+  };
+  EXPECT_EQ(nodes("{ all = true }").size(), 27U);
+  EXPECT_EQ(nodes("{ surface = true }").size(), 26U);
+  EXPECT_EQ(nodes("{ side = \"+x\" }").size(), 9U);
+  EXPECT_EQ(nodes("{ side = \"-y\", depth = 1 }").size(), 18U);
+  EXPECT_EQ(
+      nodes("{ side = \"+x\", half_space = { point = [0, 0, 0], normal = [0, 1, 0] } }").size(),
+      6U);
+  EXPECT_EQ(nodes("{ box = { min = [0, 0, 0], max = [1, 1, 1] } }").size(), 8U);
+  EXPECT_EQ(nodes("{ sphere = { center = [0, 0, 0], radius = 1 } }").size(), 7U);
+  EXPECT_EQ(nodes("{ nearest = [0.1, 0.1, 0.1] }"), (std::vector<Index>{13}));
+  EXPECT_EQ(nodes("{ nearest = [0.1, 0.1, 0.2], surface = true }"), (std::vector<Index>{22}));
+  EXPECT_EQ(nodes("{ label = 0 }").size(), 27U);
+}
+
+TEST(Build, NamesWhatCannotBeBuilt) {
+  const std::string beam = "[body.beam]\nshape = \"beam\"\n";
+  EXPECT_EQ(
+      build_error(beam + "[pin.end]\nselect = { side = \"-z\", box = { min = [0, 0, 1], max = "
+                         "[1, 1, 2] } }\n"),
+      "scene.toml:4:10: 'select' of [pin.end] selects no node of body 'beam', which reaches "
+      "from (-0.05, -0.05, 0) to (0.05, 0.05, 0.4) m\n"
+      "  remedy: places are in the world at the start, in metres, and a node has to meet "
+      "every condition");
+  EXPECT_EQ(build_error(beam + "[pin.a]\nselect = { side = \"-z\" }\n[pin.b]\nselect = { side = "
+                               "\"-x\" }\n"),
+            "scene.toml:6:10: body beam, node 0 is held by two pins, 'a' and 'b'\n"
+            "  remedy: make their selections disjoint");
+  // The folder is shown as it is seen from the current one.
+  EXPECT_NE(build_error("[body.b]\nmesh = \"beam.tom\"\n")
+                .find("scenes/beam.tom; did you mean 'beam.toml'?\n"
+                      "  remedy: mesh paths start from the scene file's folder"),
+            std::string::npos);
+  EXPECT_EQ(build_error("[body.b]\nmesh = \"/no/such/folder.mesh\"\n"),
+            "scene.toml:2:8: the mesh file of [body.b] is not there: /no/such/folder.mesh\n"
+            "  remedy: mesh paths start from the scene file's folder");
+  EXPECT_EQ(build_error("[body.b]\nshape = \"beam\"\ncells = [1000, 1000, 1000]\n"),
+            "scene.toml:2:9: beam: cells asks for 5e+03 million tets, expected 20 million or "
+            "fewer\n  remedy: give smaller numbers for cells");
+  EXPECT_EQ(build_error(beam + "scale = 1e-30\n"),
+            "scene.toml:1:1: [body.beam] cannot be simulated where it is placed: its smallest tet "
+            "has 2.6e-96 m3, its largest coordinate is 4e-31 m\n"
+            "  remedy: check scale, size and position; they are in metres");
+  EXPECT_EQ(build_error(beam + "position = [1e300, 0, 0]\n"),
+            "scene.toml:1:1: [body.beam] cannot be simulated where it is placed: its smallest tet "
+            "has 0 m3, its largest coordinate is 1e+300 m\n  remedy: check scale, size and "
+            "position; they are in metres");
+  EXPECT_EQ(build_error(beam + "density = 1e300\nyoung = 1e306\nscale = 1e3\n"),
+            "scene.toml:1:1: the masses or springs of [body.beam] are too large or too small to "
+            "compute with\n  remedy: check its density, stiffness and scale; they are in SI units");
+}
+
+TEST(Build, WarnsOfAnImplausibleSize) {
+  BuildReport report;
+  build_model(parse("[body.b]\nshape = \"box\"\nsize = [200, 150, 100]\ncells = [1, 1, 1]\n"),
+              &report);
+  ASSERT_EQ(report.bodies[0].warnings.size(), 1U);
+  EXPECT_NE(report.bodies[0].warnings[0].find("scale"), std::string::npos)
+      << report.bodies[0].warnings[0];
+}
+
+constexpr const char* kTwoBoxes = R"(
+[body.a]
+shape = "box"
+size = [1, 1, 1]
+cells = [1, 1, 1]
+[body.b]
+shape = "box"
+size = [1, 1, 1]
+cells = [2, 2, 2]
+position = [0, 2, 0]
+)";
+
+TEST(Build, TiesBodiesToTheNearestNode) {
+  const Model m = build(std::string(kTwoBoxes) +
+                        "[attachment.tie]\nbody = \"a\"\nselect = { side = \"+y\" }\n"
+                        "to_body = \"b\"\nstiffness = 7\ndamping = 8\n");
+  ASSERT_EQ(m.spring_count() - m.first_attachment, 4);
+  for (auto s = static_cast<std::size_t>(m.first_attachment); s < m.springs.size(); ++s) {
+    EXPECT_EQ(m.stiffness[s], 7.0);
+    EXPECT_EQ(m.damping[s], 8.0);
+    EXPECT_NEAR(m.rest_length[s], 1.0, 1e-15);
+    const Vec3 d = m.rest_position[static_cast<std::size_t>(m.springs[s][1])] -
+                   m.rest_position[static_cast<std::size_t>(m.springs[s][0])];
+    EXPECT_TRUE(d.isApprox(Vec3(0, 1, 0), 1e-12));
+    EXPECT_TRUE(m.bodies[0].nodes.contains(m.springs[s][0]));
+    EXPECT_TRUE(m.bodies[1].nodes.contains(m.springs[s][1]));
+  }
+}
+
+TEST(Build, TiesToAPointThatMoves) {
+  const Model m = build(std::string(kTwoBoxes) +
+                        "[attachment.tie]\nbody = \"b\"\nselect = { nearest = [0.5, 2.5, 0.5] }\n"
+                        "point = [0.5, 3.5, 0.5]\nrest_length = 0.25\n"
+                        "path = [{ time = 1, move = [0, 1, 0] }]\n");
+  ASSERT_EQ(m.spring_count() - m.first_attachment, 1);
+  EXPECT_EQ(m.rest_length.back(), 0.25);
+  EXPECT_EQ(m.node_count(), m.body_node_count() + 1);
+  ASSERT_EQ(m.pins.size(), 1U);
+  EXPECT_EQ(m.pins[0].nodes, (std::vector<Index>{m.body_node_count()}));
+  EXPECT_EQ(m.pins[0].path.pivot, Vec3(0.5, 3.5, 0.5));
+  EXPECT_TRUE(m.pins[0].path.at(1.0, m.rest_position.back()).isApprox(Vec3(0.5, 4.5, 0.5)));
+}
+
+TEST(Build, FillsInWhatActs) {
+  const Model m = build(std::string(kTwoBoxes) +
+                        "[pin.p]\nbody = \"b\"\nselect = { side = \"+y\" }\n"
+                        "[force.f]\nbody = \"b\"\nselect = { nodes = [3] }\nforce = [0, 1, 0]\n"
+                        "end = 2\n[ground]\npoint = [0, -1, 0]\n");
+  ASSERT_EQ(m.pins[0].nodes.size(), 9U);
+  EXPECT_TRUE(m.pins[0].path.pivot.isApprox(Vec3(0, 2.5, 0)));  // the mean
+  EXPECT_EQ(m.loads[0].nodes, (std::vector<Index>{m.bodies[1].nodes.begin + 3}));
+  EXPECT_EQ(m.loads[0].end, 2.0);
+  EXPECT_EQ(m.ground->point, Vec3(0, -1, 0));
+  EXPECT_EQ(m.inverse_mass[static_cast<std::size_t>(m.pins[0].nodes[0])], 0.0);
+}
+
+}  // namespace
+}  // namespace sinew
