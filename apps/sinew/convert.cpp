@@ -3,11 +3,13 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <map>
 #include <memory>
 
 #include "commands.h"
+#include "scale_option.h"
 #include "sinew/base/error.h"
 #include "sinew/io/mesh_io.h"
 #include "sinew/mesh/doctor.h"
@@ -138,9 +140,7 @@ void add_convert(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   command->add_option("in", a->in, "Mesh file to read")->required();
   command->add_option("out", a->out, "Mesh file to write")->required();
-  command->add_option("--scale", a->scale, "Factor on the positions: 0.001 from mm to m")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_scale_option(*command, a->scale);
   command->add_flag("--repair", a->repair,
                     "Turn inverted tets, drop unreferenced nodes; refuse what cannot be repaired");
   command->add_option("--format", a->format, "Variant of the format, see below");

@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "commands.h"
+#include "scale_option.h"
 #include "sinew/base/error.h"
 #include "sinew/io/mesh_io.h"
 #include "sinew/mesh/doctor.h"
@@ -85,16 +86,16 @@ Report examine(const Arguments& a) {
   return report;
 }
 
-nlohmann::json to_json(const Vec3& v) {
+nlohmann::ordered_json to_json(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-nlohmann::json to_json(const Statistics& s) {
+nlohmann::ordered_json to_json(const Statistics& s) {
   return {{"min", s.min}, {"mean", s.mean}, {"max", s.max}};
 }
 
-nlohmann::json to_json(const Report& report) {
-  using nlohmann::json;
+nlohmann::ordered_json to_json(const Report& report) {
+  using json = nlohmann::ordered_json;
   json out = {{"file", report.file},
               {"scale", report.scale},
               {"nodes", report.nodes},
@@ -242,9 +243,7 @@ void add_info(CLI::App& app) {
       "info", "The mesh doctor: size, regions, quality and problems of a tetrahedral mesh");
   auto a = std::make_shared<Arguments>();
   command->add_option("mesh", a->mesh, "Mesh file")->required();
-  command->add_option("--scale", a->scale, "Factor from the file's unit to metres: 0.001 for mm")
-      ->check(CLI::PositiveNumber)
-      ->capture_default_str();
+  add_scale_option(*command, a->scale);
   command->add_flag("--json", a->json, "Print JSON instead of text");
   command->footer(kFooter);
   command->callback([a] { info(*a); });

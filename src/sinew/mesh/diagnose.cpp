@@ -79,6 +79,7 @@ class Doctor {
   Diagnosis diagnosis_;
   std::vector<char> sound_node_;  // exists and is finite (nodes)
   std::vector<Index> sound_;      // tets fit for the geometric and topological checks
+  std::vector<char> flat_;        // without volume, so without an orientation (sound_)
 };
 
 void Doctor::check_empty() {
@@ -173,8 +174,10 @@ void Doctor::check_tets() {
     const double volume = signed_volume(mesh_.nodes, tet);
     if (std::abs(volume) <= kFlat * longest * std::sqrt(longest)) {
       degenerate.add({t});
+      flat_.push_back(1);
     } else {
       (volume > 0 ? positive : negative).push_back(t);
+      flat_.push_back(0);
     }
   }
   report(ProblemKind::repeated_node, Severity::fatal, repeated, "tet", "tets",
@@ -209,7 +212,8 @@ void Doctor::check_faces() {
     const auto sides = faces.sides_of(f);
     const Triangle& face = faces.faces[uz(f)];
     if (sides.size() > 2) shared.add({face.begin(), face.end()});
-    if (sides.size() == 2 && outward_face(tets, sides[0]) == outward_face(tets, sides[1])) {
+    if (sides.size() != 2 || flat_[uz(sides[0] / 4)] || flat_[uz(sides[1] / 4)]) continue;
+    if (outward_face(tets, sides[0]) == outward_face(tets, sides[1])) {
       overlapping.add({face.begin(), face.end()});
     }
   }
