@@ -20,9 +20,13 @@ std::string duration_text(double seconds) {
 
 // 7970 -> "7,970"
 std::string grouped(std::int64_t n) {
-  std::string digits = std::to_string(n);
-  for (std::size_t i = digits.size(); i > 3; i -= 3) digits.insert(i - 3, ",");
-  return digits;
+  const std::string digits = std::to_string(n);
+  std::string text;
+  for (std::size_t i = 0; i < digits.size(); ++i) {
+    if (i > 0 && (digits.size() - i) % 3 == 0) text += ',';
+    text += digits[i];
+  }
+  return text;
 }
 
 // A value with a prefix that keeps it between 1 and 1000: 0.0012 s -> "1.2 ms".
@@ -34,7 +38,8 @@ std::string scaled(double value, const char* unit) {
   static constexpr Prefix prefixes[] = {{1e9, "G"},  {1e6, "M"},  {1e3, "k"}, {1, ""},
                                         {1e-3, "m"}, {1e-6, "u"}, {1e-9, "n"}};
   const double size = std::abs(value);
-  if (size == 0.0) return fmt::format("0 {}", unit);
+  if (size < 1e-12) return fmt::format("0 {}", unit);
+  if (!(size < 1e12)) return fmt::format("{:.3g} {}", value, unit);
   for (const Prefix& p : prefixes) {
     if (size >= p.factor || p.factor == 1e-9) {
       return fmt::format("{:.3g} {}{}", value / p.factor, p.name, unit);
@@ -44,7 +49,8 @@ std::string scaled(double value, const char* unit) {
 }
 
 std::string percent(double share) {
-  return fmt::format("{:+.1f} %", 100 * share);
+  if (std::abs(share) < 1e3) return fmt::format("{:+.1f} %", 100 * share);
+  return fmt::format("{:+.3g} %", 100 * share);
 }
 
 }  // namespace
@@ -108,7 +114,7 @@ std::string format_table(const Summary& s) {
                   percent(-s.max_compress), percent(s.peak_stretch), percent(-s.peak_compress)));
   for (const ProbeReading& p : s.probes) {
     const Vec3 d = 1e3 * p.displacement;
-    row("probe", fmt::format("{} moved {} ({:.2f}, {:.2f}, {:.2f}) mm", p.name,
+    row("probe", fmt::format("{} moved {}: ({:.4g}, {:.4g}, {:.4g}) mm", p.name,
                              scaled(p.displacement.norm(), "m"), d.x(), d.y(), d.z()));
   }
   row("state hash", s.state_hash);

@@ -9,29 +9,29 @@
 
 namespace sinew {
 
-// Force on end i; end j gets its negative.
+// What a spring does to its ends.
+struct SpringPull {
+  Vec3 force = Vec3::Zero();  // on end i [N]; end j gets its negative
+  double heat = 0.0;          // power that the dashpot turns into heat, c (v_ij . n)^2 [W]
+};
+
 //   f = k (|x_ij| - l0) x_ij / |x_ij| + c ((v_ij . x_ij) / (x_ij . x_ij)) x_ij
-// x_ij = x_j - x_i [m], v_ij = v_j - v_i [m/s], k [N/m], l0 [m], c [N s/m]; returns [N].
+// x_ij = x_j - x_i [m], v_ij = v_j - v_i [m/s], k [N/m], l0 [m], c [N s/m].
 // Ends that coincide have no direction: no force.
-inline Vec3 spring_force(const Vec3& x_ij, const Vec3& v_ij, double k, double l0, double c) {
+inline SpringPull spring_pull(const Vec3& x_ij, const Vec3& v_ij, double k, double l0, double c) {
   const double length2 = x_ij.squaredNorm();
-  if (length2 == 0.0) return Vec3::Zero();
+  if (length2 == 0.0) return {};
+  const double inverse2 = 1.0 / length2;  // the one division: it costs more than all the rest
   const double length = std::sqrt(length2);
-  return (k * (length - l0) / length + c * v_ij.dot(x_ij) / length2) * x_ij;
+  const double along = v_ij.dot(x_ij);
+  const double dashpot = c * along * inverse2;
+  return {(k * (length - l0) * length * inverse2 + dashpot) * x_ij, dashpot * along};
 }
 
 // Stored energy k/2 (|x_ij| - l0)^2 [J].
 inline double spring_energy(const Vec3& x_ij, double k, double l0) {
   const double extension = x_ij.norm() - l0;
   return 0.5 * k * extension * extension;
-}
-
-// Power that the dashpot turns into heat, c (v_ij . n)^2 [W].
-inline double dashpot_power(const Vec3& x_ij, const Vec3& v_ij, double c) {
-  const double length2 = x_ij.squaredNorm();
-  if (length2 == 0.0) return 0.0;
-  const double along = v_ij.dot(x_ij);
-  return c * along * along / length2;
 }
 
 // Change of the force's negative when u_ij = u_j - u_i is added to x_ij, the Hessian's block times

@@ -20,9 +20,10 @@ double compute_spring_forces(const Model& model, const State& state, Workspace& 
       const auto c = static_cast<std::size_t>(model.springs[s][1]);
       const Vec3 x_ij = state.position[c] - state.position[a];
       const Vec3 v_ij = state.half_velocity[c] - state.half_velocity[a];
-      workspace.spring_force[s] =
-          spring_force(x_ij, v_ij, model.stiffness[s], model.rest_length[s], model.damping[s]);
-      power += dashpot_power(x_ij, v_ij, model.damping[s]);
+      const SpringPull pull =
+          spring_pull(x_ij, v_ij, model.stiffness[s], model.rest_length[s], model.damping[s]);
+      workspace.spring_force[s] = pull.force;
+      power += pull.heat;
     }
     workspace.partial[uz(b)] = power;
   });

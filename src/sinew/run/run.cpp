@@ -50,7 +50,7 @@ void prepare_folder(const Scene& scene, const RunOptions& options) {
     throw Error(ErrorKind::io, "cannot make the folder: " + failed.message(),
                 "choose an --out where you may write", Location{options.out.string()});
   }
-  io::write_file(options.out / scene_name, scene.document);
+  io::write_file(options.out / scene_name, document_with_base(scene));
 }
 
 // One run from where RunState stands to its end.

@@ -73,7 +73,7 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.springs = model.spring_count();
   s.stepper = scene.stepper;
   s.dt_auto = !scene.dt.has_value();
-  s.dt = run.step;
+  s.dt = run.step > 0.0 ? run.step : run.target_step;
   s.stable_step = run.smallest_stable_step;
   s.steps = run.state.step;
   s.frames = run.frame;

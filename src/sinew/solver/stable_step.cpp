@@ -133,27 +133,24 @@ double guaranteed_step(const Model& model, Index& stiffest) {
   return h;
 }
 
-}  // namespace
+struct Search {
+  int newton_steps;
+  int lanczos_steps;
+  bool safe_side;  // take the residual off the step
+};
 
-StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace,
-                            const std::vector<Vec3>& start, int lanczos_steps) {
-  StableStep result;
-  double h = guaranteed_step(model, result.stiffest);
-  result.step = h;
-  if (!std::isfinite(h)) return result;
-
-  const std::size_t nodes = model.rest_position.size();
-  Field scratch(nodes), y(nodes);
-  Field u = start.size() == nodes ? start : scattered(model);
-  // The largest eigenvalue is a convex function of h, so Newton's method comes from above after
-  // its first step and two or three steps do; without damping the first one is exact.
-  for (int newton = 0; newton < 6; ++newton) {
+// Newton's method on h from `result.step` on, with the mode guessed as `u`.
+void search(const Model& model, const Field& x, Field u, const Search& how, Workspace& workspace,
+            StableStep& result) {
+  Field scratch(u.size()), y(u.size());
+  double h = result.step;
+  for (int newton = 0; newton < how.newton_steps; ++newton) {
     const Top top =
         lanczos([&](const Field& in,
                     Field& out) { apply(model, x, h * h, 2.0 * h, in, scratch, workspace, out); },
-                u, lanczos_steps);
+                u, how.lanczos_steps);
     result.iterations += top.steps;
-    if (top.value <= 0.0) return result;
+    if (top.value <= 0.0) return;
     u = top.vector;
     apply(model, x, 1.0, 0.0, u, scratch, workspace, y);
     const double k = dot(u, y);
@@ -161,19 +158,33 @@ StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Work
     const double c = dot(u, y);
     result.omega_max = std::sqrt(std::max(0.0, k));
     result.zeta = k > 0.0 ? 0.5 * c / result.omega_max : 0.0;
-
-    // Safe side: an eigenvalue may be as much larger as the residual says.
-    const double margin = top.value / (top.value + top.residual);
+    const double margin = how.safe_side ? top.value / (top.value + top.residual) : 1.0;
     const double next = margin * positive_root(k, c);
     const bool done = std::abs(next - h) <= 2e-3 * h;
     h = next;
     if (done) break;
   }
   result.step = h;
-  double largest = 0.0;
-  for (const Vec3& v : u) largest = std::max(largest, v.cwiseAbs().maxCoeff());
-  for (Vec3& v : u) v /= largest;
   result.mode = std::move(u);
+}
+
+}  // namespace
+
+StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace) {
+  StableStep result;
+  result.step = guaranteed_step(model, result.stiffest);
+  if (!std::isfinite(result.step)) return result;
+  // The largest eigenvalue is a convex function of h, so after its first step Newton's method
+  // comes from above and two or three steps do; without damping the first one is exact.
+  search(model, x, scattered(model), {8, 60, true}, workspace, result);
+  return result;
+}
+
+StableStep watch_stable_step(const Model& model, const std::vector<Vec3>& x, double h,
+                             const std::vector<Vec3>& mode, Workspace& workspace) {
+  StableStep result;
+  result.step = h;
+  search(model, x, mode, {1, 5, false}, workspace, result);
   return result;
 }
 

@@ -23,10 +23,13 @@ struct StableStep {
 // is where the largest eigenvalue of M^-1 (h^2 K + 2 h C) reaches 4: found by Newton's method on h
 // with Lanczos inside, matrix-free, every estimate on the safe side by its residual.
 //
-// `start`: a guess of the mode, for instance that of an earlier call; may be empty.
-// `lanczos_steps`: most steps of each Lanczos run.
-StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace,
-                            const std::vector<Vec3>& start = {}, int lanczos_steps = 60);
+StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace);
+
+// The same during a run, at the price of a few steps: one short Lanczos run that starts from
+// `mode`, the mode found before, at the step `h` now taken. Not on the safe side by its residual:
+// leave a margin.
+StableStep watch_stable_step(const Model& model, const std::vector<Vec3>& x, double h,
+                             const std::vector<Vec3>& mode, Workspace& workspace);
 
 // "spring 12 (body beam, node 3 to body beam, node 4): k = ..., l0 = ..., c = ...".
 std::string describe_spring(const Model& model, Index spring);

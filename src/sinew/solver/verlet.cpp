@@ -16,7 +16,10 @@ namespace {
 
 constexpr Index none = std::numeric_limits<Index>::max();
 
-// Moves the free nodes. Returns the first node whose new position is not finite, or `none`.
+// A node this far out [m] has run away: finite to the letter, and nothing that can be shown.
+constexpr double farthest = 1e9;
+
+// Moves the free nodes. Returns the first node that is not finite or has run away, or `none`.
 Index move_free_nodes(const Model& model, const Workspace& workspace, double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
   return parallel_reduce(
@@ -28,7 +31,7 @@ Index move_free_nodes(const Model& model, const Workspace& workspace, double h, 
           if (model.inverse_mass[k] == 0.0) continue;
           state.half_velocity[k] += (kick * model.inverse_mass[k]) * workspace.force[k];
           state.position[k] += h * state.half_velocity[k];
-          if (!state.position[k].allFinite()) broken = std::min(broken, i);
+          if (!(state.position[k].cwiseAbs().maxCoeff() <= farthest)) broken = std::min(broken, i);
         }
         return broken;
       },
@@ -124,8 +127,10 @@ Index suspect_spring(const Model& model, const Workspace& workspace, Index node)
                          model.rest_length[uz(s)]);
   }
   throw Error(ErrorKind::diverged,
-              fmt::format("the state is not finite at t = {:.6g} s (step {}): {}{}", state.time,
-                          state.step, model.node_name(node), spring),
+              fmt::format("the state {} at t = {:.6g} s (step {}): {}{}",
+                          state.position[uz(node)].allFinite() ? "has run away beyond 1e9 m"
+                                                               : "is not finite",
+                          state.time, state.step, model.node_name(node), spring),
               "take dt = \"auto\", or a smaller dt or more substeps");
 }
 

@@ -22,8 +22,8 @@ struct VerletReport {
 // half-step velocity. After the move come the ground, then the limits; velocities follow the
 // corrected positions. A step may differ in length from the last one.
 //
-// Throws Error(diverged) when a position or velocity is not finite any more, and names body, node,
-// spring and time; the state is then the broken one.
+// Throws Error(diverged) when a position is not finite any more or beyond 1e9 m, and names body,
+// node, spring and time; the state is then the broken one.
 VerletReport verlet_step(const Model& model, double h, State& state, Workspace& workspace);
 
 }  // namespace sinew

@@ -1,0 +1,11 @@
+// The subcommands. Each adds itself to the app with help, options and a callback; a user's mistake
+// is thrown as sinew::Error, `status` is the exit code of a command that ends without one.
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+void add_run(CLI::App& app, int& status);
+void add_resume(CLI::App& app, int& status);
+void add_info(CLI::App& app);
+void add_convert(CLI::App& app);
+void add_completion(CLI::App& app);
