@@ -110,7 +110,7 @@ void RefusedCells::check(const std::string& file) const {
   if (counts_.empty()) return;
   std::string list;
   for (const auto& [name, count] : counts_) {
-    list += fmt::format("{}{} {}", list.empty() ? "" : ", ", count, name);
+    list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", name, count);
   }
   throw Error(ErrorKind::input, fmt::format("holds cells that are not linear tetrahedra: {}", list),
               "mesh the volume with linear tetrahedra only (in Gmsh: element order 1, no "
@@ -126,7 +126,7 @@ void require_tets(const TetMesh& mesh, const std::string& file) {
                 "export the volume mesh, not only its points", {file, 0, 0});
   }
   throw Error(ErrorKind::input,
-              fmt::format("holds no tetrahedra, only a surface of {} triangles", mesh.faces.size()),
+              fmt::format("holds no tetrahedra, only triangles ({})", mesh.faces.size()),
               "fill the surface with tetrahedra first (TetGen, Gmsh, fTetWild), or export the "
               "volume mesh",
               {file, 0, 0});

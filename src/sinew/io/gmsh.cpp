@@ -59,8 +59,11 @@ void GmshFile::expect_end(std::string_view section) {
   const std::string_view found = text.word({end});
   if (found == end) return;
   text.fail(fmt::format("expected {}, found {}", end, quoted(found)),
-            fmt::format("the count of ${} is smaller than its entries, or the line {} is missing",
-                        section, end));
+            section == "MeshFormat"
+                ? std::string("the header is one line of three numbers, then $EndMeshFormat")
+                : fmt::format("the count of ${} is smaller than its entries, or the line {} is "
+                              "missing",
+                              section, end));
 }
 
 void GmshFile::start_nodes() {
@@ -72,7 +75,8 @@ void GmshFile::finish_nodes() {
   require_indexable(mesh.nodes.size(), "nodes", text.file());
   const std::int64_t twice = ids.finish();
   if (twice < 0) return;
-  text.fail(fmt::format("two nodes have the id {}", twice), "give every node its own id");
+  text.fail_file(fmt::format("holds two nodes with the id {}", twice),
+                 "give every node its own id");
 }
 
 void GmshFile::start_elements() {
@@ -177,9 +181,10 @@ TetMesh parse_gmsh(std::string_view bytes, const std::string& name) {
     }
   }
   if (!file.has_nodes) {
-    text.fail("the file has no section $Nodes",
-              "the file was cut short, or holds no mesh: in Gmsh, mesh the volume (Mesh 3D), then "
-              "save");
+    text.fail_file(
+        "has no section $Nodes",
+        "the file was cut short, or holds no mesh: in Gmsh, mesh the volume (Mesh 3D), then "
+        "save");
   }
   file.refused.check(name);
   require_tets(file.mesh, name);

@@ -15,10 +15,11 @@ std::int64_t take_from_total(GmshFile& file, std::int64_t left, std::int64_t cou
                  "correct the totals in the first line of the section, or the block");
 }
 
-void expect_none_left(GmshFile& file, std::int64_t left, std::string_view what) {
+void expect_none_left(GmshFile& file, std::int64_t left, std::int64_t total,
+                      std::string_view what) {
   if (left == 0) return;
-  file.text.fail("the blocks of the section hold " + std::to_string(left) + " " +
-                     std::string(what) + " less than its total says",
+  file.text.fail("the total of the section says " + std::to_string(total) + " " +
+                     std::string(what) + ", but its blocks hold " + std::to_string(total - left),
                  "correct the total in the first line of the section, or restore the missing "
                  "blocks");
 }
@@ -102,7 +103,7 @@ void Gmsh41Sections::nodes(GmshFile& file) {
       for (int k = 0; k < parameters; ++k) values.value<double>({"a parameter", "node", number});
     }
   }
-  expect_none_left(file, left, "nodes");
+  expect_none_left(file, left, total, "nodes");
   file.finish_nodes();
 }
 
@@ -135,7 +136,7 @@ void Gmsh41Sections::elements(GmshFile& file) {
       file.element(type, id, label, [&] { return file.size({"a node", "element", id}); });
     }
   }
-  expect_none_left(file, left, "elements");
+  expect_none_left(file, left, total, "elements");
 }
 
 }  // namespace sinew::io

@@ -72,15 +72,17 @@ class MeditParser {
   void dimension();
   void vertices();
   template <std::size_t corners>
-  void cells(TextReader& reader, std::string_view kind, std::string_view value,
+  void cells(TextReader& reader, std::string_view kind, std::size_t count,
              std::vector<std::array<Index, corners>>& cells, std::vector<int>& labels);
   void triangles(TextReader& reader) {
+    const std::size_t count = reader.count({"the number of Triangles"}, 4);
     reader.set_part("a line of Triangles", "vertex vertex vertex label");
-    cells(reader, "triangle", "the number of Triangles", mesh_.faces, mesh_.face_label);
+    cells(reader, "triangle", count, mesh_.faces, mesh_.face_label);
   }
   void tetrahedra(TextReader& reader) {
+    const std::size_t count = reader.count({"the number of Tetrahedra"}, 5);
     reader.set_part("a line of Tetrahedra", "vertex vertex vertex vertex label");
-    cells(reader, "tetrahedron", "the number of Tetrahedra", mesh_.tets, mesh_.tet_label);
+    cells(reader, "tetrahedron", count, mesh_.tets, mesh_.tet_label);
   }
   // Reads the section now, or keeps its place and passes over it.
   void now_or_later(std::optional<TextReader>& later, void (MeditParser::*read)(TextReader&),
@@ -89,6 +91,7 @@ class MeditParser {
   TextReader reader_;
   TetMesh mesh_;
   RefusedCells refused_;
+  std::string_view section_ = "MeshVersionFormatted";  // the last keyword
   bool has_dimension_ = false;
   bool has_vertices_ = false;
   bool has_triangles_ = false;
@@ -101,8 +104,8 @@ TetMesh MeditParser::parse() {
   header();
   while (!reader_.at_end() && reader_.peek() != "End") section();
   if (!has_vertices_) {
-    reader_.fail("the file has no section Vertices",
-                 "a MEDIT mesh lists Vertices, then Tetrahedra: export it again");
+    reader_.fail_file("has no section Vertices",
+                      "a MEDIT mesh lists Vertices, then Tetrahedra: export it again");
   }
   if (later_triangles_) triangles(*later_triangles_);
   if (later_tetrahedra_) tetrahedra(*later_tetrahedra_);
@@ -130,8 +133,15 @@ void MeditParser::header() {
 }
 
 void MeditParser::section() {
-  const std::string_view keyword = reader_.word({"a section"});
+  const std::string_view before = section_;
+  const std::string_view keyword = section_ = reader_.word({"a section"});
   reader_.set_part({}, {});
+  if (keyword.find_first_of("0123456789") == 0 || keyword.find_first_of("-+.") == 0) {
+    reader_.fail(
+        fmt::format("expected a section, found {}", quoted(keyword)),
+        fmt::format("the count of {} is too small, or one of its lines has too many values",
+                    before));
+  }
   if (keyword == "Dimension") {
     dimension();
   } else if (!has_dimension_) {
@@ -165,14 +175,11 @@ void MeditParser::section_without_geometry(std::string_view keyword) {
     return;
   }
   const std::string meant = nearest(keyword, all_keywords());
-  reader_.fail(
-      fmt::format("expected a section, found {}", quoted(keyword)),
-      meant.empty()
-          ? std::string("the count of the section before may be too small; otherwise remove this "
-                        "section: only those of the MEDIT format can be read")
-          : fmt::format("did you mean {}? If a number stands here, the count of the section "
-                        "before is too small",
-                        meant));
+  reader_.fail(fmt::format("expected a section, found {}", quoted(keyword)),
+               meant.empty()
+                   ? std::string("remove this section: only those of the MEDIT format can "
+                                 "be read")
+                   : fmt::format("did you mean {}?", meant));
 }
 
 void MeditParser::once(bool& seen, std::string_view keyword) {
@@ -192,8 +199,8 @@ void MeditParser::dimension() {
 }
 
 void MeditParser::vertices() {
-  reader_.set_part("a line of Vertices", "x y z label");
   const std::size_t count = reader_.count({"the number of Vertices"}, 4);
+  reader_.set_part("a line of Vertices", "x y z label");
   require_indexable(count, "vertices", reader_.file());
   mesh_.nodes.reserve(count);
   mesh_.node_label.reserve(count);
@@ -208,10 +215,9 @@ void MeditParser::vertices() {
 }
 
 template <std::size_t corners>
-void MeditParser::cells(TextReader& reader, std::string_view kind, std::string_view value,
+void MeditParser::cells(TextReader& reader, std::string_view kind, std::size_t count,
                         std::vector<std::array<Index, corners>>& cells, std::vector<int>& labels) {
-  const std::size_t count = reader.count({value}, corners + 1);
-  require_indexable(count, value, reader.file());
+  require_indexable(count, "cells", reader.file());
   const std::int64_t last = mesh_.node_count();
   cells.reserve(count);
   labels.reserve(count);

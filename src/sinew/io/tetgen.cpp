@@ -43,10 +43,12 @@ class LineFile {
     const std::int64_t found = reader_.integer(wanted("id"));
     if (base < 0 && (found == 0 || found == 1)) base = found;
     if (base >= 0 && found == base + position) return;
-    reader_.fail_expected(
-        wanted("id"),
-        base < 0 ? std::string("0 or 1 for the first") : std::to_string(base + position),
-        std::to_string(found));
+    reader_.fail(
+        base < 0 ? fmt::format("the first {} has the id {}; 0 or 1 was expected", kind_, found)
+                 : fmt::format("expected the {} with the id {}, found {}", kind_, base + position,
+                               found),
+        "TetGen counts from 0 or 1 without gaps: renumber the file, or correct the counts in its "
+        "first line");
   }
   void end_record() {
     if (reader_.at_line_end()) return;
@@ -95,7 +97,6 @@ int region(LineFile& file, std::string_view value) {
 std::int64_t read_nodes(const TetgenText& files, TetMesh& mesh) {
   LineFile file(files.node, files.node_name, "node");
   TextReader& reader = file.reader();
-  reader.set_part("a line of a .node file", "id x y z attributes... marker");
   const std::size_t count = reader.count({"the number of nodes"}, 4);
   require_indexable(count, "nodes", files.node_name);
   if (count == 0) {
@@ -112,6 +113,7 @@ std::int64_t read_nodes(const TetgenText& files, TetMesh& mesh) {
   const std::int64_t attributes = optional_count(file, "the number of attributes", most_attributes);
   const std::int64_t markers = optional_count(file, "the number of boundary markers", 1);
   file.end_record();
+  reader.set_part("a line of a .node file", "id x y z attributes... marker");
   mesh.nodes.reserve(count);
   std::int64_t base = -1;
   for (std::size_t i = 0; i < count; ++i) {
@@ -152,7 +154,6 @@ std::array<Index, corners> read_corners(LineFile& file, std::string_view kind, s
 void read_tets(const TetgenText& files, std::int64_t base, TetMesh& mesh) {
   LineFile file(files.ele, files.ele_name, "tetrahedron");
   TextReader& reader = file.reader();
-  reader.set_part("a line of a .ele file", "id node node node node attributes...");
   const std::size_t count = reader.count({"the number of tetrahedra"}, 5);
   require_indexable(count, "tetrahedra", files.ele_name);
   const std::int64_t corners =
@@ -165,6 +166,7 @@ void read_tets(const TetgenText& files, std::int64_t base, TetMesh& mesh) {
   }
   const std::int64_t attributes = optional_count(file, "the number of attributes", most_attributes);
   file.end_record();
+  reader.set_part("a line of a .ele file", "id node node node node attributes...");
   mesh.tets.reserve(count);
   std::int64_t first = base;
   for (std::size_t i = 0; i < count; ++i) {
@@ -182,11 +184,11 @@ void read_tets(const TetgenText& files, std::int64_t base, TetMesh& mesh) {
 void read_faces(const TetgenText& files, std::int64_t base, TetMesh& mesh) {
   LineFile file(files.face, files.face_name, "face");
   TextReader& reader = file.reader();
-  reader.set_part("a line of a .face file", "id node node node marker");
   const std::size_t count = reader.count({"the number of faces"}, 4);
   require_indexable(count, "faces", files.face_name);
   const std::int64_t markers = optional_count(file, "the number of boundary markers", 1);
   file.end_record();
+  reader.set_part("a line of a .face file", "id node node node marker");
   mesh.faces.reserve(count);
   std::int64_t first = base;
   for (std::size_t i = 0; i < count; ++i) {

@@ -151,7 +151,10 @@ int TextReader::label(const Wanted& wanted) {
 
 std::size_t TextReader::count(const Wanted& wanted, std::size_t values_per_record) {
   const std::int64_t value = integer(wanted);
-  if (value < 0) fail_expected(wanted, "0 or more", std::to_string(value));
+  if (value < 0) {
+    fail(fmt::format("{} is {}; 0 or more was expected", to_text(wanted), value),
+         "correct the count, or export the file again");
+  }
   // The last value of a file needs no blank behind it.
   const std::size_t room = (remaining() + 1) / (2 * values_per_record);
   if (static_cast<std::uint64_t>(value) > room) {
@@ -229,10 +232,14 @@ void TextReader::fail(std::string message, std::string remedy) const {
   throw Error(ErrorKind::input, std::move(message), std::move(remedy), std::move(where));
 }
 
+void TextReader::fail_file(std::string message, std::string remedy) const {
+  throw Error(ErrorKind::input, std::move(message), std::move(remedy), {file_, 0, 0});
+}
+
 void TextReader::fail_expected(const Wanted& wanted, std::string_view kind,
                                std::string_view found) const {
   const std::string remedy =
-      layout_.empty() ? std::string("correct the file there")
+      layout_.empty() ? std::string("correct this value, or export the file again")
                       : fmt::format("{} is written: {}; check this entry and the count before it",
                                     part_, layout_);
   fail(fmt::format("expected {} ({}), found {}", to_text(wanted), kind, quoted(found)), remedy);

@@ -65,6 +65,8 @@ class TextReader {
 
   // Errors that point at the last value read.
   [[noreturn]] void fail(std::string message, std::string remedy) const;
+  // An error of the file as a whole: something that it lacks.
+  [[noreturn]] void fail_file(std::string message, std::string remedy) const;
   // "expected WANTED (a whole number), found "abc"".
   [[noreturn]] void fail_expected(const Wanted& wanted, std::string_view kind,
                                   std::string_view found) const;

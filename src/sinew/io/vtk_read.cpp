@@ -77,10 +77,10 @@ TetMesh VtkParser::parse() {
     section(keyword);
   }
   if (!has_points_ || !has_cells_ || !has_types_) {
-    text_.fail(fmt::format("the file has no section {}", !has_points_  ? "POINTS"
-                                                         : !has_cells_ ? "CELLS"
-                                                                       : "CELL_TYPES"),
-               "the file was cut short, or is no unstructured grid: export it again");
+    text_.fail_file(fmt::format("has no section {}", !has_points_  ? "POINTS"
+                                                     : !has_cells_ ? "CELLS"
+                                                                   : "CELL_TYPES"),
+                    "the file was cut short, or is no unstructured grid: export it again");
   }
   return mesh_from_grid(std::move(grid_), text_.file());
 }
@@ -221,8 +221,8 @@ void VtkParser::cells_with_sizes(std::size_t count, std::size_t size) {
     grid_.offsets.push_back(static_cast<std::int64_t>(grid_.connectivity.size()));
   }
   if (left != 0) {
-    text_.fail(fmt::format("the {} cells take {} numbers, but the size of the cell list is {}",
-                           count, size - left, size),
+    text_.fail(fmt::format("the cells take {} numbers, but the size of the cell list is {}",
+                           size - left, size),
                "CELLS has two counts: the cells, and all numbers that follow; correct them");
   }
 }
@@ -283,7 +283,10 @@ void VtkParser::start_attributes(Owner owner) {
   tuples_ = values_.count(wanted);
   const std::size_t expected = owner == Owner::points ? grid_.points.size() : grid_.offsets.size();
   if (tuples_ != expected) {
-    text_.fail_expected(wanted, std::to_string(expected), std::to_string(tuples_));
+    text_.fail(
+        fmt::format("{} is {}; the file has {} {}", to_text(wanted), tuples_, expected,
+                    owner == Owner::points ? "points" : "cells"),
+        "POINT_DATA and CELL_DATA stand behind the points and cells and have as many values");
   }
 }
 

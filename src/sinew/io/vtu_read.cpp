@@ -77,7 +77,7 @@ class VtuParser {
   [[noreturn]] void fail(std::ptrdiff_t offset, std::string message, std::string remedy) const;
   [[noreturn]] void fail_at(const pugi::xml_node& node, std::string message,
                             std::string_view remedy) const {
-    fail(node.offset_debug(), std::move(message), std::string(remedy));
+    fail(node.offset_debug() - 1, std::move(message), std::string(remedy));
   }
 
   std::string_view bytes_;
@@ -159,7 +159,7 @@ TetMesh VtuParser::parse() {
   load();
   const pugi::xml_node root = document_.document_element();
   if (std::string_view(root.name()) != "VTKFile") {
-    fail(root ? root.offset_debug() : 0,
+    fail(root ? root.offset_debug() - 1 : 0,
          fmt::format("the root element is {}, VTKFile was expected", quoted(root.name())),
          "is this a VTU file?");
   }
@@ -282,6 +282,7 @@ std::vector<T> VtuParser::text_values(const pugi::xml_node& array, std::string_v
   const auto start = static_cast<std::size_t>(text.data() - bytes_.data());
   TextReader reader(bytes_.substr(0, start + text.size()), name_, 0);
   reader.go_to(start);
+  reader.set_part("an array", "numbers divided by blanks");
   while (!reader.at_end()) {
     const Wanted wanted{"value", label, static_cast<std::int64_t>(found.size())};
     if (found.size() == expected) {
