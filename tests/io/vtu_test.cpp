@@ -72,6 +72,15 @@ TEST(Vtu, FramesComeBackInSinglePrecisionMeshesBitByBit) {
   }
 }
 
+TEST(Vtu, CellsEncodedOnceGiveTheSameFrame) {
+  const Frame frame;
+  VtuData data = frame.data();
+  const std::string expected = format_vtu(data);
+  const std::string cells = format_vtu_cells(data.tets, data.faces, VtuEncoding::zlib);
+  data.encoded_cells = cells;
+  EXPECT_EQ(format_vtu(data), expected);
+}
+
 TEST(Vtu, CompressedArraysOfManyBlocks) {
   TetMesh mesh;
   for (int i = 0; i < 70'000; ++i) mesh.nodes.emplace_back(i / 3.0, i % 7, -i);

@@ -25,6 +25,7 @@ class Base64Reader {
   std::optional<std::size_t> bad_at() const { return bad_at_; }
 
  private:
+  std::size_t decode_plain_groups(char* bytes, std::size_t most);
   bool decode_group();
 
   std::string_view text_;

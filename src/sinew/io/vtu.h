@@ -39,6 +39,9 @@ struct VtuData {
   std::vector<VtuArray<double>> cell_scalars;  // cells: the tets, then the faces
   std::vector<VtuArray<int>> cell_integers;
   std::optional<double> time;  // [s]; written as the field array TimeValue
+  // What format_vtu_cells gave for the same tets, faces and encoding, or empty. The cells of a time
+  // series stay the same, and they are most of the work of a compressed frame.
+  std::string_view encoded_cells;
 };
 
 struct VtuOptions {
@@ -50,6 +53,8 @@ struct VtuOptions {
 
 // Error (internal) where an array's size is not that of the points or cells.
 std::string format_vtu(const VtuData& data, const VtuOptions& options = {});
+std::string format_vtu_cells(std::span<const Tet> tets, std::span<const Triangle> faces,
+                             VtuEncoding encoding);
 // As a whole or not at all (file_io.h). Error (io) where the system refuses.
 void write_vtu(const std::filesystem::path& path, const VtuData& data,
                const VtuOptions& options = {});

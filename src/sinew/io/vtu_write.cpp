@@ -78,10 +78,19 @@ class VtuWriter {
     }
     line("<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">", data_.points.size(), cell_count());
     points();
-    cells();
+    if (data_.encoded_cells.empty()) {
+      cells();
+    } else {
+      text_ += data_.encoded_cells;
+    }
     point_data();
     cell_data();
     line("</Piece>\n</UnstructuredGrid>\n</VTKFile>");
+    return std::move(text_);
+  }
+
+  std::string write_cells() {
+    cells();
     return std::move(text_);
   }
 
@@ -212,6 +221,15 @@ class VtuWriter {
 
 std::string format_vtu(const VtuData& data, const VtuOptions& options) {
   return VtuWriter(data, options).write();
+}
+
+std::string format_vtu_cells(std::span<const Tet> tets, std::span<const Triangle> faces,
+                             VtuEncoding encoding) {
+  VtuData data;
+  data.tets = tets;
+  data.faces = faces;
+  const VtuOptions options{encoding};
+  return VtuWriter(data, options).write_cells();
 }
 
 void write_vtu(const std::filesystem::path& path, const VtuData& data, const VtuOptions& options) {
