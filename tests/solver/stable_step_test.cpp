@@ -85,24 +85,28 @@ TEST(StableStep, IsSharpOnTissueWithAndWithoutDamping) {
 }
 
 TEST(StableStep, WatchingFromTheKnownModeFindsTheSameStep) {
-  Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.2}, {4, 4, 4});
-  finish(m);
-  Workspace w(m);
-  const StableStep found = find_stable_step(m, m.rest_position, w);
-  const StableStep watched = watch_stable_step(m, m.rest_position, 0.9 * found.step, found.mode, w);
-  EXPECT_NEAR(watched.step, found.step, 0.02 * found.step);
+  for (const double zeta : {0.0, 0.2}) {
+    Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = zeta}, {4, 4, 4});
+    finish(m);
+    Workspace w(m);
+    StableStep found = find_stable_step(m, m.rest_position, w);
+    const double watched = watch_stable_step(m, m.rest_position, 0.9 * found.step, found.mode, w);
+    EXPECT_LT(watched, 1.01 * found.step);
+    EXPECT_GT(watched, 0.95 * found.step);
+  }
 }
 
-TEST(StableStep, StretchStiffensAndIsSeen) {
+TEST(StableStep, StretchStiffensAndIsSeenAfterAFewLooks) {
   Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.0}, {4, 4, 4});
   finish(m);
   Workspace w(m);
-  const StableStep rest = find_stable_step(m, m.rest_position, w);
+  StableStep rest = find_stable_step(m, m.rest_position, w);
   std::vector<Vec3> stretched = m.rest_position;
   for (Vec3& p : stretched) p *= 3.0;
-  const double h = watch_stable_step(m, stretched, rest.step, rest.mode, w).step;
+  double h = rest.step;
+  for (int look = 0; look < 5; ++look) h = watch_stable_step(m, stretched, h, rest.mode, w);
   EXPECT_LT(h, 0.95 * rest.step);
-  EXPECT_NEAR(h, find_stable_step(m, stretched, w).step, 0.1 * h);
+  EXPECT_NEAR(h, find_stable_step(m, stretched, w).step, 0.02 * h);
 }
 
 TEST(StableStep, DescribesTheStiffestSpring) {

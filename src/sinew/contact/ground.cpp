@@ -45,6 +45,7 @@ Rebound rebound(double height, double velocity, double a, double h, double resti
 GroundReport respond_to_ground(const Model& model, const std::vector<Vec3>& force, double h,
                                State& state) {
   const Ground& ground = *model.ground;
+  const double kick = 0.5 * (state.last_step + h);
   return parallel_reduce(
       model.body_node_count(), GroundReport{},
       [&](Range range) {
@@ -65,11 +66,17 @@ GroundReport respond_to_ground(const Model& model, const std::vector<Vec3>& forc
           const double kept =
               speed > 0.0 ? std::max(0.0, 1.0 - ground.friction * impulse / speed) : 0.0;
 
+          // Friction works on the mean of the sliding velocities before and after the step, as
+          // Verlet's own balance does: none where the node sticks.
+          const Vec3 push = model.inverse_mass[k] * force[k];
+          const Vec3 slide_before = slide - kick * (push - a * ground.normal);
+          const double friction_loss =
+              (1.0 - kept) * slide.dot(0.5 * (slide_before + kept * slide));
+
           x += (after.height - height) * ground.normal - (after.left * (1.0 - kept)) * slide;
           w = after.velocity * ground.normal + kept * slide;
           ++report.contacts;
-          report.dissipated +=
-              model.mass[k] * (after.loss + 0.5 * speed * speed * (1.0 - kept * kept));
+          report.dissipated += model.mass[k] * (after.loss + friction_loss);
         }
         return report;
       },

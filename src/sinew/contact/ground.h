@@ -13,7 +13,8 @@ struct GroundReport {
 };
 
 // Corrects the nodes that a step of length h has taken below the ground. `state` holds the
-// predicted positions and half-step velocities, `force` the force of the step [N] (nodes).
+// predicted positions and half-step velocities and, in last_step, the step before this one; `force`
+// is the force of the step [N] (nodes).
 //
 // Within a step the acceleration is constant and a node flies on a parabola; the moment at which
 // it meets the plane is exact, so a ball that bounces with restitution 1 keeps its height. A node

@@ -11,8 +11,8 @@
 namespace sinew {
 namespace {
 
-// Steps between two looks at the stable step; a look costs about as much as ten steps.
-constexpr std::int64_t watch_interval = 128;
+// Steps between two looks at the stable step; a look costs about as much as five steps.
+constexpr std::int64_t watch_interval = 48;
 
 // A number that rounding has left a little above an integer is that integer.
 std::int64_t round_up(double x) {
@@ -81,15 +81,12 @@ void Stepping::begin_frame(RunState& run) const {
 void Stepping::watch(RunState& run) {
   run.steps_to_watch = watch_interval;
   if (run.stiff_mode.empty()) return;
-  StableStep now =
+  run.stable_step =
       watch_stable_step(model_, run.state.position, run.step, run.stiff_mode, workspace_);
-  if (now.mode.empty() || !std::isfinite(now.step)) return;
-  run.stable_step = now.step;
-  run.smallest_stable_step = std::min(run.smallest_stable_step, now.step);
-  run.stiff_mode = std::move(now.mode);
-  const double wish = std::min(safety_ * now.step, interval_);
+  run.smallest_stable_step = std::min(run.smallest_stable_step, run.stable_step);
+  const double wish = std::min(safety_ * run.stable_step, interval_);
   if (!automatic_) {
-    if (run.step > now.step) ++run.unstable_watches;
+    if (run.step > run.stable_step) ++run.unstable_watches;
   } else if (run.step > 1.03 * wish) {
     // The margin is being eaten up: shorten the rest of the frame.
     ++run.step_reductions;

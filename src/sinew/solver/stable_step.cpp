@@ -133,24 +133,25 @@ double guaranteed_step(const Model& model, Index& stiffest) {
   return h;
 }
 
-struct Search {
-  int newton_steps;
-  int lanczos_steps;
-  bool safe_side;  // take the residual off the step
-};
+}  // namespace
 
-// Newton's method on h from `result.step` on, with the mode guessed as `u`.
-void search(const Model& model, const Field& x, Field u, const Search& how, Workspace& workspace,
-            StableStep& result) {
+StableStep find_stable_step(const Model& model, const Field& x, Workspace& workspace) {
+  StableStep result;
+  double h = guaranteed_step(model, result.stiffest);
+  result.step = h;
+  if (!std::isfinite(h)) return result;
+
+  Field u = scattered(model);
   Field scratch(u.size()), y(u.size());
-  double h = result.step;
-  for (int newton = 0; newton < how.newton_steps; ++newton) {
+  // The largest eigenvalue is a convex function of h, so after its first step Newton's method
+  // comes from above and two or three steps do; without damping the first one is exact.
+  for (int newton = 0; newton < 8; ++newton) {
     const Top top =
         lanczos([&](const Field& in,
                     Field& out) { apply(model, x, h * h, 2.0 * h, in, scratch, workspace, out); },
-                u, how.lanczos_steps);
+                u, 60);
     result.iterations += top.steps;
-    if (top.value <= 0.0) return;
+    if (top.value <= 0.0) return result;
     u = top.vector;
     apply(model, x, 1.0, 0.0, u, scratch, workspace, y);
     const double k = dot(u, y);
@@ -158,34 +159,29 @@ void search(const Model& model, const Field& x, Field u, const Search& how, Work
     const double c = dot(u, y);
     result.omega_max = std::sqrt(std::max(0.0, k));
     result.zeta = k > 0.0 ? 0.5 * c / result.omega_max : 0.0;
-    const double margin = how.safe_side ? top.value / (top.value + top.residual) : 1.0;
-    const double next = margin * positive_root(k, c);
+    // On the safe side: an eigenvalue may be as much larger as the residual says.
+    const double next = top.value / (top.value + top.residual) * positive_root(k, c);
     const bool done = std::abs(next - h) <= 2e-3 * h;
     h = next;
     if (done) break;
   }
   result.step = h;
   result.mode = std::move(u);
-}
-
-}  // namespace
-
-StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace) {
-  StableStep result;
-  result.step = guaranteed_step(model, result.stiffest);
-  if (!std::isfinite(result.step)) return result;
-  // The largest eigenvalue is a convex function of h, so after its first step Newton's method
-  // comes from above and two or three steps do; without damping the first one is exact.
-  search(model, x, scattered(model), {8, 60, true}, workspace, result);
   return result;
 }
 
-StableStep watch_stable_step(const Model& model, const std::vector<Vec3>& x, double h,
-                             const std::vector<Vec3>& mode, Workspace& workspace) {
-  StableStep result;
-  result.step = h;
-  search(model, x, mode, {1, 5, false}, workspace, result);
-  return result;
+double watch_stable_step(const Model& model, const Field& x, double h, Field& mode,
+                         Workspace& workspace) {
+  Field scratch(mode.size());
+  Top top =
+      lanczos([&](const Field& in,
+                  Field& out) { apply(model, x, h * h, 2.0 * h, in, scratch, workspace, out); },
+              mode, 3);
+  if (!(top.value > 0.0)) return h;
+  mode = std::move(top.vector);
+  // With h scaled by s, h^2 K + 2 h C grows at most by s^2 for s > 1 and shrinks at least by s for
+  // s < 1: either way this is a stable step.
+  return top.value > 4.0 ? h * 4.0 / top.value : h * 2.0 / std::sqrt(top.value);
 }
 
 std::string describe_spring(const Model& model, Index spring) {

@@ -25,11 +25,12 @@ struct StableStep {
 //
 StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace);
 
-// The same during a run, at the price of a few steps: one short Lanczos run that starts from
-// `mode`, the mode found before, at the step `h` now taken. Not on the safe side by its residual:
-// leave a margin.
-StableStep watch_stable_step(const Model& model, const std::vector<Vec3>& x, double h,
-                             const std::vector<Vec3>& mode, Workspace& workspace);
+// The same during a run, at the price of about five steps: three steps of Lanczos that start from
+// `mode`, the mode found before, with the step `h` now taken; `mode` becomes the better one.
+// Returns a stable step, which with damping may be shorter than the largest. What three steps
+// cannot see is not in it: leave a margin.
+double watch_stable_step(const Model& model, const std::vector<Vec3>& x, double h,
+                         std::vector<Vec3>& mode, Workspace& workspace);
 
 // "spring 12 (body beam, node 3 to body beam, node 4): k = ..., l0 = ..., c = ...".
 std::string describe_spring(const Model& model, Index spring);

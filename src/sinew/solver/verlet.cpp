@@ -88,16 +88,17 @@ void enforce_limits(const Model& model, const Workspace& workspace, double h, St
   report.limits_met =
       moved == 0 || measure_limit_violation(model, state.position) <= model.limit_tolerance;
 
-  // Loss: kinetic energy taken, and the forces' work over the correction by the mean of its ends.
-  state.energy.dissipated += parallel_sum(model.node_count(), [&](Index i) {
+  // The limits' impulses work on the mean of the velocities before and after the step, as in
+  // Verlet's own balance: none where a taut spring just holds.
+  const double kick = 0.5 * (state.last_step + h);
+  state.energy.dissipated -= parallel_sum(model.node_count(), [&](Index i) {
     const auto k = uz(i);
     if (model.inverse_mass[k] == 0.0) return 0.0;
-    const Vec3 shift = state.position[k] - predicted[k];
-    const Vec3 before = state.half_velocity[k];
-    const Vec3 after = before + shift / h;
-    state.half_velocity[k] = after;
-    return 0.5 * model.mass[k] * (before.squaredNorm() - after.squaredNorm()) +
-           0.5 * workspace.force[k].dot(shift);
+    const Vec3 change = (state.position[k] - predicted[k]) / h;
+    const Vec3 before =
+        state.half_velocity[k] - (kick * model.inverse_mass[k]) * workspace.force[k];
+    state.half_velocity[k] += change;
+    return 0.5 * model.mass[k] * change.dot(before + state.half_velocity[k]);
   });
 }
 
