@@ -19,10 +19,8 @@ class Hash {
     bytes(s.data(), s.size());
   }
   template <typename T>
-    requires std::is_arithmetic_v<T>
-  void value(T v) {
-    bytes(&v, sizeof v);
-  }
+  requires std::is_arithmetic_v<T>
+  void value(T v) { bytes(&v, sizeof v); }
   // Elements without padding: numbers, fixed-size vectors of them.
   template <typename T>
   void array(const std::vector<T>& v) {
