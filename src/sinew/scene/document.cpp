@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <tuple>
 
 namespace sinew {
 
@@ -96,10 +97,11 @@ DocValue convert_table(const toml::table& table, const std::string& file) {
     value.entries.push_back(
         {std::string(key.str()), convert(child, file), location(key.source(), file)});
   // The library sorts keys by name; a scene's bodies are numbered in the file's order.
-  std::stable_sort(
-      value.entries.begin(), value.entries.end(), [](const DocEntry& a, const DocEntry& b) {
-        return std::pair(a.where.line, a.where.column) < std::pair(b.where.line, b.where.column);
-      });
+  const auto place = [](const DocEntry& e) {
+    return std::tie(e.where.line, e.where.column, e.key);
+  };
+  std::sort(value.entries.begin(), value.entries.end(),
+            [&](const DocEntry& a, const DocEntry& b) { return place(a) < place(b); });
   return value;
 }
 
