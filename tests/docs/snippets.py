@@ -178,7 +178,7 @@ class Scratch:
         if block.tag == "toml" and block.text.startswith("# scene"):
             scene = self.root / "scenes" / "snippet.toml"
             scene.write_text(block.text)
-            return True, self.run("sinew", "run", str(scene), "--quiet", "--out", "out/snippet",
+            return True, self.run("sinew", "run", str(scene), "--quiet", "--no-output",
                                   "--set", f"duration={SCENE_SECONDS}")
         if block.tag == "cpp test":
             source = self.root / "snippet.cpp"
