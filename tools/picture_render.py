@@ -122,16 +122,15 @@ class Visible:
 class Occluder:
     """Answers from where a direction of light is blocked, by depth maps of points on the surface."""
 
-    RESOLUTION = 256
     SAMPLES_PER_PIXEL = 3
 
-    def __init__(self, points, triangles):
-        self.points = points
+    def __init__(self, points, triangles, resolution):
+        self.resolution = resolution  # cells of a depth map's side
         self.radius = np.linalg.norm(points.max(axis=0) - points.min(axis=0)) / 2
         self.center = (points.max(axis=0) + points.min(axis=0)) / 2
         a, b, c = (points[triangles[:, i]] for i in range(3))
         area = np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
-        pixel = 2 * self.radius / self.RESOLUTION
+        pixel = 2 * self.radius / self.resolution
         count = int(self.SAMPLES_PER_PIXEL * area.sum() / pixel**2)
         rng = np.random.default_rng(0)
         t = np.searchsorted(np.cumsum(area), (np.arange(count) + 0.5) / count * area.sum())
@@ -145,17 +144,17 @@ class Occluder:
         for direction in directions:
             right, up = basis_of(direction)
             axes = np.stack([right, up, direction], axis=1)
-            scale = (self.RESOLUTION - 4) / (2 * self.radius)
+            scale = (self.resolution - 4) / (2 * self.radius)
             grid = self._depth_map((self.samples - self.center) @ axes, scale)
             q = (queries - self.center) @ axes
-            ij = np.clip((q[:, :2] * scale + self.RESOLUTION / 2).astype(int), 0,
-                         self.RESOLUTION - 1)
+            ij = np.clip((q[:, :2] * scale + self.resolution / 2).astype(int), 0,
+                         self.resolution - 1)
             lit += q[:, 2] > grid[ij[:, 0], ij[:, 1]] - bias
         return lit / len(directions)
 
     def _depth_map(self, p, scale):
         """Largest height over each cell; then the largest of the neighbours, to close gaps."""
-        n = self.RESOLUTION
+        n = self.resolution
         ij = np.clip((p[:, :2] * scale + n / 2).astype(int), 0, n - 1)
         level = ((p[:, 2] / self.radius + 1) * 32767).astype(np.uint16)  # 16 bits sort fast
         order = np.argsort(level, kind="stable")  # the last write wins
@@ -205,11 +204,11 @@ class Studio:
 
     GHOST = np.array([0.16, 0.20, 0.26])
     KEY, FILL, RIM, SKY, GLOSS = 0.84, 0.24, 0.10, 0.56, 0.08
-    GROUND_CELLS = 160
 
     def __init__(self, camera, ground):
         self.camera = camera
         self.ground = ground  # height of the ground [m]
+        self.resolution = int(np.clip(camera.height / 5, 48, 256))  # of what casts soft shadows
         toward, right = camera.toward, camera.right
         level = normalized(toward * [1, 0, 1])
         self.key = normalized(0.75 * level - 0.75 * right + 1.5 * np.array([0, 1, 0]))
@@ -227,7 +226,7 @@ class Studio:
         position = seen.interpolate(triangles, points)
 
         # Every direction of light is traced once, for the subject and the ground together.
-        occluder = Occluder(points, triangles)
+        occluder = Occluder(points, triangles, self.resolution)
         bias = 0.012 * occluder.radius
         spots = self._ground_spots(occluder)
         key = occluder.visibility(np.concatenate([position + 2 * bias * n, spots]),
@@ -259,13 +258,13 @@ class Studio:
     def _ground_spots(self, occluder):
         """A square grid of points on the ground around the subject."""
         self.reach = 3.0 * occluder.radius
-        side = np.linspace(-self.reach, self.reach, self.GROUND_CELLS)
+        side = np.linspace(-self.reach, self.reach, self.resolution)
         x, z = np.meshgrid(occluder.center[0] + side, occluder.center[2] + side, indexing="ij")
         return np.stack([x, np.full_like(x, self.ground), z], axis=-1).reshape(-1, 3)
 
     def _ground_image(self, occluder, key, sky):
         """White, with the subject's shadow on the ground; it fades towards the picture's edges."""
-        camera, n = self.camera, self.GROUND_CELLS
+        camera, n = self.camera, self.resolution
         dark = blurred((0.30 * (1 - key) + 0.55 * (1 - sky)).reshape(n, n))
         side = np.linspace(-self.reach, self.reach, n) / (1.15 * occluder.radius)
         dark *= np.exp(-(side[:, None] ** 2 + side**2))
