@@ -172,6 +172,10 @@ TetMesh parse_gmsh(std::string_view bytes, const std::string& name) {
                 "two sections must go");
     }
     section.remove_prefix(1);
+    if (section == "ParametricNodes") {
+      text.fail("$ParametricNodes cannot be read",
+                "save the mesh again without Mesh.SaveParametric, or as version 4.1");
+    }
     const bool known = format == Format::msh41 ? sections41.read(file, section)
                                                : read_gmsh22_section(file, section);
     if (known) {

@@ -1,4 +1,7 @@
 // Gmsh 4.1: $Entities, $Nodes and $Elements, in blocks by entity. Text and binary are alike.
+#include <algorithm>
+#include <array>
+#include <cstdlib>
 #include <limits>
 
 #include "sinew/io/gmsh_parts.h"
@@ -57,7 +60,9 @@ void Gmsh41Sections::entities(GmshFile& file) {
       const std::int64_t groups = file.size({"the number of physical tags", kind, tag});
       for (std::int64_t k = 0; k < groups; ++k) {
         const int physical = file.values.value<std::int32_t>({"a physical tag", kind, tag});
-        if (k == 0) physical_[{d, tag}] = physical;
+        // A negative tag is the group of that number, with the entity turned around.
+        constexpr int lowest = -std::numeric_limits<int>::max();
+        if (k == 0) physical_[{d, tag}] = std::abs(std::max(physical, lowest));
       }
       const std::int64_t borders =
           d == 0 ? 0 : file.size({"the number of boundary entities", kind, tag});

@@ -51,7 +51,8 @@ int label_of(const std::vector<int>& labels, std::size_t i) {
   return labels.empty() ? 0 : labels[i];
 }
 
-// The distinct labels of so many cells, in order: a label's entity is 1 + its place here.
+// Physical groups have positive tags. A label that is not positive is held by the tag of its
+// entity, which then is in no group; entities of groups count from 1.
 std::vector<int> distinct_labels(const std::vector<int>& labels, std::size_t cells) {
   if (cells == 0) return {};
   std::vector<int> distinct = labels.empty() ? std::vector<int>{0} : labels;
@@ -61,6 +62,7 @@ std::vector<int> distinct_labels(const std::vector<int>& labels, std::size_t cel
 }
 
 int entity_of(const std::vector<int>& distinct, int label) {
+  if (label <= 0) return label;
   const auto place = std::lower_bound(distinct.begin(), distinct.end(), label);
   return static_cast<int>(place - distinct.begin()) + 1;
 }
@@ -88,9 +90,8 @@ void write_elements22(ValueWriter& out, int type, const std::vector<Cell>& cells
       out.integer(type);
       out.integer(2);
     }
-    out.integer(label);
-    // A reader takes physical tag 0 as "none" and falls back on the entity: keep the 0 there.
-    out.integer(label == 0 ? 0 : entity_of(distinct, label));
+    out.integer(std::max(label, 0));  // 0: in no group
+    out.integer(entity_of(distinct, label));
     for (const Index node : cells[i]) out.integer(node + 1);
     out.end_line();
   }
@@ -113,7 +114,7 @@ void write22(const TetMesh& mesh, ValueWriter& out) {
   out.end_section("Elements");
 }
 
-// One entity for each label, in the physical group of that number; no boundaries are listed.
+// One entity for each label; no boundaries are listed.
 void write_entities(ValueWriter& out, const TetMesh& mesh, const std::vector<int>& surfaces,
                     const std::vector<int>& volumes) {
   Vec3 low = Vec3::Zero();
@@ -129,13 +130,13 @@ void write_entities(ValueWriter& out, const TetMesh& mesh, const std::vector<int
   }
   out.end_line();
   for (const std::vector<int>* labels : {&surfaces, &volumes}) {
-    for (std::size_t i = 0; i < labels->size(); ++i) {
-      out.integer(static_cast<int>(i) + 1);
+    for (const int label : *labels) {
+      out.integer(entity_of(*labels, label));
       out.position(low);
       out.position(high);
-      out.size(1);
-      out.integer((*labels)[i]);
-      out.size(0);
+      out.size(label > 0 ? 1 : 0);
+      if (label > 0) out.integer(label);
+      out.size(0);  // boundaries
       out.end_line();
     }
   }
@@ -180,7 +181,10 @@ void write41(const TetMesh& mesh, ValueWriter& out) {
   out.section("Nodes");
   for (const std::size_t v : {std::size_t{1}, nodes, std::size_t{1}, nodes}) out.size(v);
   out.end_line();
-  for (const int v : {3, 1, 0}) out.integer(v);  // all in the first volume, without parameters
+  // All in the first volume, without parameters.
+  for (const int v : {3, volumes.empty() ? 1 : entity_of(volumes, volumes.front()), 0}) {
+    out.integer(v);
+  }
   out.size(nodes);
   out.end_line();
   for (std::size_t i = 0; i < nodes; ++i) {

@@ -26,6 +26,8 @@ struct WriteOptions {
 
 // The same endings. Positions come back bit by bit, and so do the labels that the format can hold:
 // all of tets and faces; of nodes in all but Gmsh. No part of a file is ever left (file_io.h).
+// TetGen: NAME.node, NAME.ele, and NAME.face where there are faces; an old NAME.face that does not
+// belong to them is removed.
 void write_mesh(const std::filesystem::path& path, const TetMesh& mesh,
                 const WriteOptions& options = {});
 

@@ -42,8 +42,6 @@ class ValueReader {
     swap_ = swap;
   }
   bool binary() const { return text_.binary(); }
-  bool swapped() const { return swap_; }
-  TextReader& text() { return text_; }
 
   // One number of the file's type T. A text number must be in the range of T.
   template <typename T>
