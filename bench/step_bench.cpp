@@ -1,0 +1,110 @@
+// What a step costs: springs, limits, the whole Verlet step, the search for the stable step, on
+// W(k) (the beam of the scenes, 20 k^3 tets) and the liver; and what the machine can do, in the
+// same run. Every benchmark of steps prints the hash of the state it ends with.
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+
+#include <string>
+#include <vector>
+
+#include "sinew/base/hash.h"
+#include "sinew/base/parallel.h"
+#include "sinew/forces/limits.h"
+#include "sinew/forces/springs.h"
+#include "sinew/scene/build.h"
+#include "sinew/solver/stable_step.h"
+#include "sinew/solver/verlet.h"
+
+namespace {
+
+using namespace sinew;
+
+// W(k) for k > 0; the 10 mm liver for 0.
+Model model_of(std::int64_t k, const std::vector<std::string>& more = {}) {
+  const std::string scenes = SINEW_SOURCE_DIR "/scenes/";
+  if (k == 0) return build_model(load_scene(scenes + "liver.toml", more));
+  std::vector<std::string> overrides = {fmt::format("beam.cells=[{},{},{}]", k, k, 4 * k)};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return build_model(load_scene(scenes + "beam.toml", overrides));
+}
+
+void per_spring(benchmark::State& state, const Model& model) {
+  state.counters["springs"] = static_cast<double>(model.spring_count());
+  state.counters["per_spring"] = benchmark::Counter(
+      static_cast<double>(state.iterations()) * static_cast<double>(model.spring_count()),
+      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+void SpringForces(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const Model model = model_of(state.range(0));
+  Workspace workspace(model);
+  const State s = initial_state(model);
+  for (auto _ : state) benchmark::DoNotOptimize(compute_spring_forces(model, s, workspace));
+  per_spring(state, model);
+}
+
+void VerletStep(benchmark::State& state) {
+  const ThreadLimit limit(static_cast<int>(state.range(1)));
+  const Model model = model_of(state.range(0));
+  Workspace workspace(model);
+  State s = initial_state(model);
+  const double h = 0.5 * find_stable_step(model, s.position, workspace).step;
+  for (int i = 0; i < 100; ++i) verlet_step(model, h, s, workspace);
+  state.SetLabel("state after 100 steps " + hex(s.hash()));
+  for (auto _ : state) verlet_step(model, h, s, workspace);
+  per_spring(state, model);
+}
+
+void LimitSweep(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const Model model = model_of(
+      state.range(0), {state.range(0) == 0 ? "liver.stretch_limit=0.1" : "beam.stretch_limit=0.1"});
+  std::vector<Vec3> x = model.rest_position;
+  for (auto _ : state) benchmark::DoNotOptimize(sweep_limits(model, x));
+  per_spring(state, model);
+}
+
+void StableStepSearch(benchmark::State& state) {
+  const Model model = model_of(state.range(0));
+  Workspace workspace(model);
+  int products = 0;
+  for (auto _ : state) {
+    products = find_stable_step(model, model.rest_position, workspace).iterations;
+  }
+  state.counters["products"] = products;
+}
+
+// The machine's own limits: copying arrays of doubles, and multiply-adds on registers.
+void MachineCopy(benchmark::State& state) {
+  const auto bytes = static_cast<std::size_t>(state.range(0)) * 1024;
+  std::vector<double> from(bytes / 16, 1.0), to(bytes / 16);
+  for (auto _ : state) {
+    std::copy(from.begin(), from.end(), to.begin());
+    benchmark::ClobberMemory();
+  }
+  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) *
+                          static_cast<std::int64_t>(bytes));
+}
+
+void MachineMultiplyAdd(benchmark::State& state) {
+  double a[16];
+  for (double& x : a) x = 1.0;
+  for (auto _ : state) {
+    for (double& x : a) x = x * 0.999999 + 1e-6;
+    benchmark::DoNotOptimize(a);
+  }
+  state.counters["flops"] = benchmark::Counter(32.0 * static_cast<double>(state.iterations()),
+                                               benchmark::Counter::kIsRate);
+}
+
+}  // namespace
+
+BENCHMARK(MachineCopy)->Arg(256)->Arg(8 << 10)->Arg(256 << 10);  // KiB: L2, L3, memory
+BENCHMARK(MachineMultiplyAdd);
+BENCHMARK(SpringForces)->Arg(4)->Arg(8)->Arg(17)->Arg(0);
+BENCHMARK(VerletStep)->ArgsProduct({{4, 8, 17, 0}, {1, 2}})->UseRealTime();
+BENCHMARK(LimitSweep)->Arg(4)->Arg(8)->Arg(0);
+BENCHMARK(StableStepSearch)->Arg(4)->Arg(8)->Arg(0)->Unit(benchmark::kMillisecond);
+
+BENCHMARK_MAIN();
