@@ -1,6 +1,9 @@
 // What a user reads after a mistake in a scene file, word by word.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <fstream>
+#include <sstream>
 #include <vector>
 
 #include "tests/scene/support.h"
@@ -256,6 +259,19 @@ TEST(BadScenes, AreBadInput) {
       EXPECT_EQ(error.location().file, "scene.toml") << bad.scene;
     }
   }
+}
+
+// The fuzzer's seeds: an Error or a scene, never anything else.
+TEST(BadScenes, FuzzSeedsEndInAnErrorOrAScene) {
+  int files = 0;
+  for (const auto& entry :
+       std::filesystem::directory_iterator(SINEW_SOURCE_DIR "/fuzz/corpus/scene")) {
+    std::ostringstream text;
+    text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
+    EXPECT_NO_THROW(test::parse_error(text.str())) << entry.path();
+    ++files;
+  }
+  EXPECT_GT(files, 10);
 }
 
 }  // namespace

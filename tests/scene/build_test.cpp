@@ -106,7 +106,7 @@ TEST(Build, BeamScalesByOverrides) {
   const Model m = build_model(scene);
   EXPECT_EQ(m.tet_count(), 10240);
   EXPECT_EQ(m.bodies[0].laws, "uniform");
-  EXPECT_EQ(m.stiffness[0], 2e5);
+  EXPECT_DOUBLE_EQ(m.stiffness[0], 2e5);
   EXPECT_EQ(m.probes[0].nodes.size(), 81U);
 }
 
