@@ -108,7 +108,9 @@ std::string format_table(const Summary& s) {
                             scaled(s.energy.elastic, "J"), scaled(s.energy.gravity, "J")));
   row("", fmt::format("dissipated {}, work in {}", scaled(s.energy.dissipated, "J"),
                       scaled(s.energy.work_in, "J")));
-  row("volume", fmt::format("{} since the start", percent(s.volume_ratio - 1)));
+  row("volume",
+      fmt::format("{} since the start, {} of {} tets inverted", percent(s.volume_ratio - 1),
+                  grouped(s.inverted_tets), grouped(s.tets)));
   row("stretch",
       fmt::format("longest {}, shortest {} (in the run {}, {})", percent(s.max_stretch),
                   percent(-s.max_compress), percent(s.peak_stretch), percent(-s.peak_compress)));

@@ -47,10 +47,11 @@ inline Vec3 spring_stiffness_times(const Vec3& x_ij, double k, double l0, const 
   return k * (along + transverse * (u_ij - along));
 }
 
-// Change of the dashpot's force with the velocity: c n (n . u).
+// Change of the dashpot's force with the velocity: c n (n . u). Ends that coincide may part in any
+// direction: c u.
 inline Vec3 dashpot_times(const Vec3& x_ij, double c, const Vec3& u_ij) {
   const double length2 = x_ij.squaredNorm();
-  if (length2 == 0.0) return Vec3::Zero();
+  if (length2 == 0.0) return c * u_ij;
   return (c * x_ij.dot(u_ij) / length2) * x_ij;
 }
 

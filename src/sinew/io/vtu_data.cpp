@@ -82,7 +82,7 @@ class Decoder {
 
   bool fits(std::uint64_t size) {
     return size <= most_ ||
-           fail(fmt::format("says it has {} bytes, {} were expected", size, most_));
+           fail(fmt::format("says it has {} bytes; at most {} were expected", size, most_));
   }
 
   bool header(std::uint64_t count, std::vector<std::uint64_t>& numbers) {

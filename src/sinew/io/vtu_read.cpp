@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <bit>
 #include <functional>
 #include <limits>
@@ -18,6 +19,10 @@ namespace {
 
 constexpr std::string_view export_again =
     "export the file again (in ParaView: Save Data, type VTU, any data mode)";
+// Real meshes compress by less than a hundred. A small file that grows to gigabytes is refused
+// before it does.
+constexpr std::size_t trusted_expansion = 256;
+constexpr std::size_t always_trusted = std::size_t{64} << 20;
 constexpr auto any_size = std::numeric_limits<std::size_t>::max();
 
 std::size_t type_bytes(std::string_view type) {
@@ -53,7 +58,8 @@ void convert(std::string_view type, std::string_view bytes, bool swap, std::vect
 
 class VtuParser {
  public:
-  VtuParser(std::string_view bytes, const std::string& name) : bytes_(bytes), name_(name) {}
+  VtuParser(std::string_view bytes, const std::string& name)
+      : bytes_(bytes), name_(name), trusted_(trusted_expansion * bytes.size() + always_trusted) {}
 
   TetMesh parse();
 
@@ -82,6 +88,7 @@ class VtuParser {
 
   std::string_view bytes_;
   const std::string& name_;
+  std::size_t trusted_;  // how many bytes the arrays may still decode to
   pugi::xml_document document_;
   std::string_view appended_;  // the appended data behind their underscore
   bool appended_raw_ = false;
@@ -252,7 +259,8 @@ std::vector<T> VtuParser::values(const pugi::xml_node& array, std::size_t expect
     found = text_values<T>(array, label, expected);
   } else {
     const std::size_t most = expected > any_size / bytes_each ? any_size : expected * bytes_each;
-    const std::string bytes = binary_values(array, label, most);
+    const std::string bytes = binary_values(array, label, std::min(most, trusted_));
+    trusted_ -= bytes.size();
     found.reserve(bytes.size() / bytes_each);
     convert(type, bytes, form_.swap, found);
   }

@@ -5,6 +5,7 @@
 #include "sinew/base/hash.h"
 #include "sinew/forces/limits.h"
 #include "sinew/forces/springs.h"
+#include "sinew/mesh/tet_mesh.h"
 
 namespace sinew {
 namespace {
@@ -69,6 +70,7 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
     volume += s.bodies.back().rest_volume * s.bodies.back().volume_ratio;
   }
   s.volume_ratio = volume / rest_volume;
+  for (const Tet& t : model.tets) s.inverted_tets += signed_volume(x, t) < 0.0 ? 1 : 0;
   s.nodes = model.body_node_count();
   s.springs = model.spring_count();
   s.stepper = scene.stepper;
@@ -142,6 +144,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
             {"work_in", s.energy.work_in},
             {"drift", s.energy_drift}}},
           {"volume_ratio", s.volume_ratio},
+          {"inverted_tets", s.inverted_tets},
           {"max_stretch", s.max_stretch},
           {"max_compress", s.max_compress},
           {"peak_stretch", s.peak_stretch},

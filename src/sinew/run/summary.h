@@ -44,6 +44,7 @@ struct Summary {
   Energies energy;
   double energy_drift = 0.0;  // change of the account's total since the start [J]
   double volume_ratio = 1.0;  // of all bodies together [-]
+  Index inverted_tets = 0;    // at the end
   double max_stretch = 0.0, max_compress = 0.0;    // at the end, as a share of the rest length
   double peak_stretch = 0.0, peak_compress = 0.0;  // the largest of all frames
   std::int64_t contacts = 0;                       // nodes on the ground at the end

@@ -26,6 +26,19 @@ void check_name(const DocEntry& entry, std::string_view kind) {
                 "names become parts of file names and of --set keys", entry.where);
 }
 
+// The scene's name becomes the name of a folder and of files within it.
+void check_scene_name(const std::string& name, const Location& where) {
+  bool good = !name.empty() && name.size() <= 128 && name.front() != '.';
+  for (const char c : name)
+    good = good && c != '/' && c != '\\' && static_cast<unsigned char>(c) >= 32;
+  if (!good)
+    throw Error(ErrorKind::input,
+                fmt::format("'{}' cannot name a scene; expected 1 to 128 characters without / and "
+                            "\\, not starting with a dot",
+                            name.substr(0, 128)),
+                "name = \"...\" in the scene names its folder and files", where);
+}
+
 // Reads every entry of a table of named tables, [kind.NAME].
 template <typename Part, typename Parse>
 void parse_named(const Reader& root, std::string_view kind, std::vector<Part>& out, Parse parse) {
@@ -105,6 +118,8 @@ Scene parse_scene(std::string_view text, const std::string& file_name,
   apply_overrides(document, overrides);
   Scene scene = parse_root(document);
   if (scene.name.empty()) scene.name = std::filesystem::path(file_name).stem().string();
+  const DocValue* name = document.find("name");
+  check_scene_name(scene.name, name != nullptr ? name->where : Location{file_name, 0, 0});
   scene.file = file_name;
   scene.base = (scene.base.empty() ? base : base / scene.base).string();
   // The document says what runs, not where its files lie: the same scene has the same document in
