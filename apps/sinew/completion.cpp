@@ -19,7 +19,7 @@ Examples:
   sinew completion zsh > ~/.zfunc/_sinew
   sinew completion fish > ~/.config/fish/completions/sinew.fish)");
   command->callback([shell] {
-    fmt::print("{}", *shell == "bash" ? bash_completion
+    fmt::print("{}", *shell == "bash"  ? bash_completion
                      : *shell == "zsh" ? zsh_completion
                                        : fish_completion);
   });

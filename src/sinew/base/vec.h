@@ -18,7 +18,9 @@ using Triangle = std::array<Index, 3>;  // three node ids, counter-clockwise see
 using Tet = std::array<Index, 4>;       // four node ids, positive signed volume
 
 // An index as a subscript: v[uz(i)] says that i is known not to be negative.
-constexpr std::size_t uz(Index i) { return static_cast<std::size_t>(i); }
+constexpr std::size_t uz(Index i) {
+  return static_cast<std::size_t>(i);
+}
 
 // Half-open range of indices [begin, end).
 struct Range {
