@@ -1,6 +1,7 @@
 #include "progress.h"
 
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -16,6 +17,12 @@ std::string duration_text(double seconds) {
   if (seconds < 99.5) return fmt::format("{:.0f} s", std::ceil(seconds));
   if (seconds < 5940) return fmt::format("{:.0f} min", std::ceil(seconds / 60));
   return fmt::format("{:.1f} h", seconds / 3600);
+}
+
+int terminal_columns() {
+  winsize size{};
+  if (ioctl(STDERR_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return 80;
+  return size.ws_col;
 }
 
 // 7970 -> "7,970"
@@ -71,12 +78,17 @@ void ProgressBar::update(const Progress& p) {
   const double gone = p.sim_seconds - p.start_seconds;
   const double speed = p.wall_seconds > 0 ? gone / p.wall_seconds : 0;
   const double left = speed > 0 ? (p.duration - p.sim_seconds) / speed : 0;
-  constexpr int width = 24;
+  const std::string text =
+      fmt::format("{:3.0f} %  {:.2f} of {:.2f} s  {:.2f}x real time  {} left", 100 * done,
+                  p.sim_seconds, p.duration, speed, duration_text(left));
+  // The bar takes what the line leaves; a line that wraps could not be drawn over.
+  const int room = terminal_columns() - static_cast<int>(title_.size() + text.size()) - 3;
+  const int width = std::clamp(room, 0, 24);
   const int filled = static_cast<int>(done * width);
   std::string bar;
   for (int i = 0; i < width; ++i) bar += i < filled ? "█" : "░";
-  fmt::print(stderr, "\r\033[K{} {} {:3.0f} %  {:.2f} of {:.2f} s  {:.2f}x real time  {} left",
-             title_, bar, 100 * done, p.sim_seconds, p.duration, speed, duration_text(left));
+  fmt::print(stderr, "\r\033[K{}{}{}{}", room < 0 ? "" : title_ + " ", bar, width > 0 ? " " : "",
+             text);
   std::fflush(stderr);
   drawn_ = true;
 }
