@@ -55,6 +55,10 @@ std::string scaled(double value, const char* unit) {
   return {};
 }
 
+std::string mass_text(double kilograms) {
+  return kilograms < 1.0 ? scaled(1e3 * kilograms, "g") : fmt::format("{:.3g} kg", kilograms);
+}
+
 std::string percent(double share) {
   if (std::abs(share) < 1e3) return fmt::format("{:+.1f} %", 100 * share);
   return fmt::format("{:+.3g} %", 100 * share);
@@ -108,7 +112,7 @@ std::string format_table(const Summary& s) {
   t += fmt::format("{}\n", s.title.empty() ? s.scene : s.title);
   for (const BodySummary& b : s.bodies) {
     row("mesh", fmt::format("{}: {}, {} nodes, {} tets, {}", b.name, b.mesh, grouped(b.nodes),
-                            grouped(b.tets), scaled(b.mass * 1e3, "g")));
+                            grouped(b.tets), mass_text(b.mass)));
     row("law", fmt::format("{}, {} springs", b.laws, grouped(b.springs)));
   }
   row("step",

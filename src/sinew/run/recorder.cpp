@@ -92,7 +92,8 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
       scene_(scene.name),
       folder_(std::move(folder)),
       vtu_(scene.output.vtu),
-      encoding_(scene.output.encoding) {
+      encoding_(encoding_of(scene.output.encoding)),
+      cells_(vtu_ ? io::format_vtu_cells(model.tets, {}, encoding_) : std::string()) {
   const std::size_t rows = run.frame_times.size();
   probes_ = open_table(folder_ / "probes.csv", probe_header(model), rows);
   energy_ = open_table(folder_ / "energy.csv", energy_header, rows);
@@ -158,8 +159,9 @@ void Recorder::write_frame(const RunState& run, const std::vector<Vec3>& velocit
   data.cell_scalars = {{"volume_ratio", ratio}};
   data.cell_integers = {{"region", model_.tet_region}, {"body", body}};
   data.time = run.state.time;
+  data.encoded_cells = cells_;
   io::VtuOptions options;
-  options.encoding = encoding_of(encoding_);
+  options.encoding = encoding_;
   io::write_vtu(folder_ / frame_file(scene_, run.frame_times.size() - 1), data, options);
 }
 

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "sinew/forces/workspace.h"
+#include "sinew/io/vtu.h"
 #include "sinew/run/stepping.h"
 #include "sinew/scene/scene.h"
 
@@ -29,7 +30,8 @@ class Recorder {
   std::string scene_;  // its name, which names the files
   std::filesystem::path folder_;
   bool vtu_;
-  std::string encoding_;
+  io::VtuEncoding encoding_;
+  std::string cells_;  // encoded once: they are the same in every frame
   std::ofstream probes_;
   std::ofstream energy_;
 };

@@ -11,12 +11,18 @@
 namespace sinew {
 namespace {
 
-// Steps between two looks at the stable step; a look costs about as much as five steps.
+// Steps between two looks at the stable step; a look costs about as much as two steps.
 constexpr std::int64_t watch_interval = 48;
 
 // A number that rounding has left a little above an integer is that integer.
 std::int64_t round_up(double x) {
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(x * (1.0 - 1e-12))));
+}
+
+// h with three digits, rounded down: what a user can type and is still stable.
+double typed_step(double h) {
+  const double unit = std::pow(10.0, std::floor(std::log10(h)) - 2.0);
+  return std::floor(h / unit) * unit;
 }
 
 [[noreturn]] void refuse(const Scene& scene, const Model& model, const StableStep& stable) {
@@ -29,8 +35,7 @@ std::int64_t round_up(double x) {
       fmt::format("a smaller step (dt <= {:.3g}, or dt = \"auto\"); or more substeps (substeps = "
                   "{}); or a softer material or a coarser mesh. allow_unstable = true runs it all "
                   "the same",
-                  std::floor(stable.step * scene.substeps * 1e6) * 1e-6,
-                  round_up(*scene.dt / stable.step)),
+                  typed_step(stable.step * scene.substeps), round_up(*scene.dt / stable.step)),
       Location{scene.file});
 }
 

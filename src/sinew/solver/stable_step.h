@@ -11,11 +11,11 @@ namespace sinew {
 
 struct StableStep {
   double step = 0.0;       // h_c [s]; infinity where nothing can move
-  double omega_max = 0.0;  // sqrt of the largest eigenvalue of M^-1 K [rad/s]
-  double zeta = 0.0;       // damping ratio of the mode that limits the step [-]
+  double omega_max = 0.0;  // angular frequency of the mode that limits the step [rad/s]
+  double zeta = 0.0;       // its damping ratio [-]
   Index stiffest = -1;     // spring with the largest k / m_red
-  int iterations = 0;      // Lanczos steps taken
-  std::vector<Vec3> mode;  // the mode that limits the step (nodes), largest entry 1
+  int iterations = 0;      // products of Lanczos taken
+  std::vector<Vec3> mode;  // M^1/2 times the mode that limits the step, of unit norm (nodes)
 };
 
 // h_c at positions x. A step of the stepper in verlet.h is stable for every mode u (u.Mu = 1) with
@@ -25,10 +25,10 @@ struct StableStep {
 //
 StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace);
 
-// The same during a run, at the price of about five steps: three steps of Lanczos that start from
+// The same during a run, at the price of about two steps: three products of Lanczos that start from
 // `mode`, the mode found before, with the step `h` now taken; `mode` becomes the better one.
-// Returns a stable step, which with damping may be shorter than the largest. What three steps
-// cannot see is not in it: leave a margin.
+// Returns a stable step, which with damping may be shorter than the largest. What three
+// products cannot see is not in it: leave a margin.
 double watch_stable_step(const Model& model, const std::vector<Vec3>& x, double h,
                          std::vector<Vec3>& mode, Workspace& workspace);
 
