@@ -1,0 +1,39 @@
+// A report as one HTML file: no script, no second file, readable in light and dark mode and on
+// paper. What it holds is escaped; the page is well-formed XML as well.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "sinew/report/svg_plot.h"
+#include "sinew/report/table.h"
+
+namespace sinew::report {
+
+// Parts appear in the order in which they are added. Figures that follow each other stand side by
+// side where the window is wide enough.
+class Page {
+ public:
+  explicit Page(std::string title);
+
+  Page& heading(std::string_view text);  // a section; several of them get a list of contents
+  Page& subheading(std::string_view text);
+  Page& paragraph(std::string_view text);
+  Page& list(const std::vector<std::string>& items);
+  Page& preformatted(std::string_view text);  // keeps its lines: a command, a scene
+  Page& table(const Table& table);
+  Page& figure(const Plot& plot, std::string_view caption = {});
+  Page& figure(const BarChart& chart, std::string_view caption = {});
+
+  std::string html() const;
+
+ private:
+  Page& add_figure(const std::string& svg, std::string_view caption);
+
+  std::string title_;
+  std::vector<std::string> sections_;  // escaped headings
+  std::string body_;
+};
+
+}  // namespace sinew::report
