@@ -8,6 +8,8 @@
 
 #include "sinew/base/error.h"
 #include "sinew/forces/laws.h"
+#include "sinew/forces/network.h"
+#include "sinew/forces/volume.h"
 #include "sinew/mesh/coloring.h"
 #include "sinew/mesh/edges.h"
 
@@ -20,12 +22,23 @@ double tet_stiffness(const Material& material, double volume, double length, dou
     case Law::uniform:
       return material.spring_stiffness / sharing;
     case Law::lloyd:
-      return lloyd_stiffness(material.length == LloydLength::tet ? regular_edge(volume) : length,
+      return material.spring_scale *
+             lloyd_stiffness(material.length == LloydLength::tet ? regular_edge(volume) : length,
                              material.young);
     case Law::vangelder:
-      return vangelder_stiffness(volume, length, material.young);
+    case Law::calibrated:
+      return material.spring_scale * vangelder_stiffness(volume, length, material.young);
+    case Law::neo_hookean:
+      return 0.0;
   }
   throw Error(ErrorKind::internal, "unknown law");
+}
+
+// The stiffness that sets the dashpot. The network law's springs have none of their own along the
+// edge: vangelder's stand in, so that a damping ratio means much the same under every law.
+double damped_stiffness(const Material& material, double volume, double length, double sharing) {
+  if (material.law == Law::neo_hookean) return vangelder_stiffness(volume, length, material.young);
+  return tet_stiffness(material, volume, length, sharing);
 }
 
 // The dashpot that `material` gives to a spring of this total stiffness.
@@ -66,12 +79,14 @@ void add_springs(Model& model, const Body& body, const BodySpec& spec) {
     const std::span<const Index> around = table.tets_of(static_cast<Index>(e));
     const auto sharing = static_cast<double>(around.size());
     double k = 0.0;
+    double damped = 0.0;
     double stretch_limit = no_limit;
     double compress_limit = no_limit;
     for (const Index t : around) {
       const auto tet = first_tet + uz(t);
       const Material& m = spec.materials[static_cast<std::size_t>(model.tet_region[tet])];
       k += tet_stiffness(m, model.rest_volume[tet], length, sharing);
+      damped += damped_stiffness(m, model.rest_volume[tet], length, sharing);
       stretch_limit = std::min(stretch_limit, m.stretch_limit);
       compress_limit = std::min(compress_limit, m.compress_limit);
     }
@@ -79,7 +94,7 @@ void add_springs(Model& model, const Body& body, const BodySpec& spec) {
     for (const Index t : around) {
       const auto tet = first_tet + uz(t);
       const Material& m = spec.materials[static_cast<std::size_t>(model.tet_region[tet])];
-      c += law_damping(m, k, model.mass[first + i], model.mass[first + j], length) / sharing;
+      c += law_damping(m, damped, model.mass[first + i], model.mass[first + j], length) / sharing;
     }
     model.springs.push_back(
         {body.nodes.begin + table.edges[e][0], body.nodes.begin + table.edges[e][1]});
@@ -99,6 +114,10 @@ const char* law_name(Law law) {
       return "lloyd";
     case Law::vangelder:
       return "vangelder";
+    case Law::neo_hookean:
+      return "neo-hookean";
+    case Law::calibrated:
+      return "calibrated";
   }
   return "?";
 }
@@ -150,6 +169,8 @@ void add_body(Model& model, const BodySpec& spec) {
   body.springs.begin = model.spring_count();
   add_springs(model, body, spec);
   body.springs.end = model.spring_count();
+  add_network(model, spec.mesh, spec.materials, spec.tet_region, body.nodes.begin);
+  add_volume_terms(model, body, spec.materials);
   model.first_attachment = model.spring_count();
 
   double mass = 0.0;
@@ -210,20 +231,44 @@ void mark_pinned(Model& model) {
   }
 }
 
+// Bodies whose springs have neither stiffness nor dashpot (the network law, undamped) cost nothing.
+void find_active_springs(Model& model) {
+  std::vector<Range> ranges;
+  for (const Body& body : model.bodies) ranges.push_back(body.springs);
+  ranges.push_back({model.first_attachment, model.spring_count()});
+  model.active_springs.clear();
+  for (const Range& r : ranges) {
+    bool active = false;
+    for (auto s = uz(r.begin); s < uz(r.end); ++s) {
+      active = active || model.stiffness[s] > 0.0 || model.damping[s] > 0.0;
+    }
+    if (!active) continue;
+    if (!model.active_springs.empty() && model.active_springs.back().end == r.begin) {
+      model.active_springs.back().end = r.end;
+    } else {
+      model.active_springs.push_back(r);
+    }
+  }
+}
+
 void list_springs_of_nodes(Model& model) {
   model.spring_start.assign(model.rest_position.size() + 1, 0);
-  for (const Edge& s : model.springs) {
-    for (const Index node : s) ++model.spring_start[uz(node) + 1];
+  for (const Range& active : model.active_springs) {
+    for (Index s = active.begin; s < active.end; ++s) {
+      for (const Index node : model.springs[uz(s)]) ++model.spring_start[uz(node) + 1];
+    }
   }
   for (std::size_t i = 1; i < model.spring_start.size(); ++i) {
     model.spring_start[i] += model.spring_start[i - 1];
   }
   std::vector<Index> next(model.spring_start.begin(), model.spring_start.end() - 1);
-  model.node_spring.resize(2 * model.springs.size());
-  for (Index s = 0; s < model.spring_count(); ++s) {
-    for (Index end = 0; end < 2; ++end) {
-      const auto node = static_cast<std::size_t>(model.springs[uz(s)][uz(end)]);
-      model.node_spring[static_cast<std::size_t>(next[node]++)] = 2 * s + end;
+  model.node_spring.resize(uz(model.spring_start.back()));
+  for (const Range& active : model.active_springs) {
+    for (Index s = active.begin; s < active.end; ++s) {
+      for (Index end = 0; end < 2; ++end) {
+        const auto node = uz(model.springs[uz(s)][uz(end)]);
+        model.node_spring[uz(next[node]++)] = 2 * s + end;
+      }
     }
   }
 }
@@ -251,6 +296,11 @@ void colour_limited_springs(Model& model) {
 
 void finish(Model& model) {
   mark_pinned(model);
+  if (!model.network_start.empty()) {  // rows for bodies and anchors that came after
+    model.network_start.resize(model.rest_position.size() + 1, model.network_start.back());
+  }
+  finish_volume_terms(model);
+  find_active_springs(model);
   list_springs_of_nodes(model);
   colour_limited_springs(model);
 }

@@ -1,4 +1,4 @@
-// All springs of a model: forces, energy, stretch, and the products the stable step needs.
+// All springs of a model: forces, energy, stretch.
 #pragma once
 
 #include <span>
@@ -14,7 +14,7 @@ namespace sinew {
 double compute_spring_forces(const Model& model, const State& state, Workspace& workspace);
 
 // Sum over springs of k/2 (|x_ij| - l0)^2 [J].
-double elastic_energy(const Model& model, std::span<const Vec3> x);
+double spring_energy(const Model& model, std::span<const Vec3> x);
 
 // |x_ij| / l0 - 1 over the bodies' springs [-]: the largest, and the smallest as a positive share.
 struct StretchRange {
@@ -24,11 +24,6 @@ struct StretchRange {
   Index shortest = -1;
 };
 StretchRange measure_stretch(const Model& model, std::span<const Vec3> x);
-
-// out = (a K + b C) u at positions x: K the springs' stiffness (compressed springs without their
-// negative transverse part), C the dashpots and the drag. Pinned nodes have u = 0 and get 0.
-void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double a, double b,
-                             std::span<const Vec3> u, Workspace& workspace, std::span<Vec3> out);
 
 // Sum, for every node in the fixed order of its springs, of what workspace.spring_force holds.
 inline Vec3 gather_springs(const Model& model, const Workspace& workspace, Index node) {

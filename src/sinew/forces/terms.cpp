@@ -3,7 +3,9 @@
 #include <algorithm>
 
 #include "sinew/base/parallel.h"
+#include "sinew/forces/network.h"
 #include "sinew/forces/springs.h"
+#include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
 
 namespace sinew {
@@ -15,6 +17,8 @@ double load_share(const Load& load, double t) {
 
 double compute_forces(const Model& model, const State& state, Workspace& workspace) {
   double power = compute_spring_forces(model, state, workspace);
+  if (model.has_volume) compute_volume_forces(model, state.position, workspace);
+  const bool network = !model.network_start.empty();
   const Index n = model.node_count();
   workspace.partial.assign(static_cast<std::size_t>(block_count(n)), 0.0);
   parallel_blocks(n, [&](Index b, Range r) {
@@ -22,6 +26,8 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
     for (Index i = r.begin; i < r.end; ++i) {
       const auto k = uz(i);
       Vec3 f = gather_springs(model, workspace, i);
+      if (network) f += network_pull(model, state.position, i);
+      if (model.has_volume) f += gather_tets(model, workspace, i);
       if (model.inverse_mass[k] > 0.0) {
         const Vec3& w = state.half_velocity[k];
         f += model.mass[k] * (model.gravity - model.drag[k] * w);
@@ -55,6 +61,10 @@ std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
   return v;
 }
 
+double elastic_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+  return spring_energy(model, x) + network_energy(model, x) + volume_energy(model, x, workspace);
+}
+
 Energies measure_energies(const Model& model, const State& state, Workspace& workspace) {
   compute_forces(model, state, workspace);
   const std::vector<Vec3> v = synchronous_velocity(model, state, workspace);
@@ -68,7 +78,7 @@ Energies measure_energies(const Model& model, const State& state, Workspace& wor
     if (model.inverse_mass[k] == 0.0) return 0.0;
     return -model.mass[k] * model.gravity.dot(state.position[k] - model.rest_position[k]);
   });
-  e.elastic = elastic_energy(model, state.position);
+  e.elastic = elastic_energy(model, state.position, workspace);
   e.dissipated = state.energy.dissipated;
   e.work_in = state.energy.work_in;
   return e;

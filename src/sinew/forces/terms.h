@@ -2,6 +2,7 @@
 // is added here (docs/adding-a-force.md).
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sinew/forces/workspace.h"
@@ -9,8 +10,8 @@
 
 namespace sinew {
 
-// Fills workspace.force with the total force on every node [N]: springs, dashpots, gravity, drag,
-// loads at state.time. Pinned nodes and anchors get only what the springs pull on them.
+// Fills workspace.force with the total force on every node [N]: springs, dashpots, network, volume,
+// gravity, drag, loads at state.time. Pinned nodes and anchors get only what the material pulls.
 // Returns the power [W] that dashpots and drag turn into heat.
 double compute_forces(const Model& model, const State& state, Workspace& workspace);
 
@@ -23,9 +24,12 @@ double load_share(const Load& load, double t);
 std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
                                        const Workspace& workspace);
 
+// What springs, network and volume store at positions x [J]; 0 at rest.
+double elastic_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace);
+
 struct Energies {
   double kinetic = 0.0;     // [J] of the nodes that are free to move, with the talk's velocity
-  double elastic = 0.0;     // [J] in the springs
+  double elastic = 0.0;     // [J] in springs, network and volume
   double gravity = 0.0;     // [J] of the free nodes, 0 at their rest positions
   double dissipated = 0.0;  // [J] since the start
   double work_in = 0.0;     // [J] since the start

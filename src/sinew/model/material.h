@@ -10,6 +10,17 @@ enum class Law {
   uniform,    // the same k and c for every spring
   lloyd,      // Lloyd, Szekely, Harders 2007: from Young's modulus
   vangelder,  // Van Gelder 1998: from Young's modulus
+  // From here on the material decides all of the behaviour:
+  neo_hookean,  // constant springs of rest length zero and volume (docs/methods/neo-hookean.md)
+  calibrated,   // vangelder's springs and node volume, scaled to match E and nu on this mesh
+};
+
+// The cells whose volume an energy keeps (docs/methods/volume.md).
+enum class Volume {
+  by_law,  // node for neo-hookean and calibrated, none for the others
+  none,    // no volume is kept
+  tet,     // every tet's
+  node,    // every node's share of its tets, split by region
 };
 
 // Which length enters Lloyd's formula.
@@ -27,10 +38,10 @@ enum class Damping {
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 
 struct Material {
-  Law law = Law::lloyd;
+  Law law = Law::neo_hookean;
   double density = 1060.0;        // [kg/m3] > 0
-  double young = 15e3;            // [Pa] > 0; lloyd and vangelder
-  double poisson = 0.45;          // [-] in (-1, 0.5); kept for the laws that can honour it
+  double young = 15e3;            // [Pa] > 0; all laws but uniform
+  double poisson = 0.45;          // [-] in (-1, 0.5)
   double spring_stiffness = 2e5;  // [N/m] > 0; uniform
   double spring_damping = 3e3;    // [N s/m] >= 0; uniform
   LloydLength length = LloydLength::tet;
@@ -39,6 +50,34 @@ struct Material {
   double drag = 0.0;                 // [1/s] >= 0; force -drag m v on every node
   double stretch_limit = no_limit;   // tau_s [-] > 0: |x_ij| <= (1 + tau_s) l0
   double compress_limit = no_limit;  // tau_c [-] in (0, 1]: |x_ij| >= (1 - tau_c) l0
+  double beta = 0.0;                 // [-] in [0, 1]; neo-hookean: share of the tets' own gradients
+  Volume volume = Volume::by_law;
+  double volume_stiffness = -1.0;  // kappa [Pa] of the cells; negative: from young and poisson
+  double spring_scale = 1.0;       // [-] > 0 on the stiffness of lloyd's, vangelder's springs
 };
+
+// Lame's constants: mu = E / (2 (1 + nu)), lambda = E nu / ((1 + nu)(1 - 2 nu)) [Pa].
+inline double shear_modulus(double young, double poisson) {
+  return young / (2.0 * (1.0 + poisson));
+}
+inline double lame_lambda(double young, double poisson) {
+  return young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+}
+
+// The volume cells that the material's law means by `by_law`.
+inline Volume volume_cells(const Material& m) {
+  if (m.volume != Volume::by_law) return m.volume;
+  return m.law == Law::neo_hookean || m.law == Law::calibrated ? Volume::node : Volume::none;
+}
+
+// kappa [Pa] of the volume energy. The network law needs lambda + mu (Smith, de Goes, Kim 2018); an
+// isotropic network of classic springs brings lambda = mu of its own, and lacks lambda - mu.
+inline double volume_stiffness(const Material& m) {
+  if (m.volume_stiffness >= 0.0) return m.volume_stiffness;
+  const double mu = shear_modulus(m.young, m.poisson);
+  const double lambda = lame_lambda(m.young, m.poisson);
+  if (m.law == Law::neo_hookean) return lambda + mu;
+  return lambda > mu ? lambda - mu : 0.0;
+}
 
 }  // namespace sinew

@@ -30,6 +30,12 @@ std::uint64_t Model::hash() const {
   h.array(damping);
   h.array(stretch_limit);
   h.array(compress_limit);
+  h.array(network_node);
+  h.array(network_stiffness);
+  h.array(tet_shear);
+  h.array(tet_bulk);
+  h.array(cells);
+  h.array(cell_bulk);
   h.array(limited);
   h.array(colour_start);
   h.value(limit_sweeps);

@@ -76,10 +76,30 @@ struct Model {
   std::vector<double> stretch_limit;   // tau_s [-] (springs), infinity: none
   std::vector<double> compress_limit;  // tau_c [-] (springs), infinity: none
   Index first_attachment = 0;          // springs from here on tie bodies to points or bodies
+  std::vector<Range> active_springs;   // those with a stiffness or a dashpot, body by body
 
-  // --- node -> its springs, for a gather in a fixed order ---
+  // --- node -> its springs that pull, for a gather in a fixed order ---
   std::vector<Index> spring_start;  // offsets into node_spring (nodes + 1)
   std::vector<Index> node_spring;   // 2 s: the node is end 0 of spring s; 2 s + 1: end 1
+
+  // --- network: springs of rest length zero and constant stiffness (law neo-hookean), as rows:
+  // the force on i is sum_j k_ij (x_j - x_i), k_ij = k_ji of either sign ---
+  std::vector<Index> network_start;       // offsets (nodes + 1); empty: no network
+  std::vector<Index> network_node;        // j, increasing in each row
+  std::vector<double> network_stiffness;  // k_ij [N/m]
+
+  // --- volume: what every tet's own volume does, and the cells that tets share ---
+  std::vector<double> tet_shear;            // mu_t [Pa] (tets), 0 under classic laws: the push
+                                            // outwards that balances the network's pull
+  std::vector<double> tet_bulk;             // kappa_t [Pa] (tets), 0: the tet's volume is free
+  std::vector<std::array<Index, 4>> cells;  // cell of each corner (tets), -1: none
+  std::vector<double> cell_volume;          // V_c = sum of its tets' V / 4 [m3] (cells)
+  std::vector<double> cell_bulk;            // kappa_c [Pa] (cells)
+  std::vector<Index> cell_start;            // offsets into cell_tet (cells + 1)
+  std::vector<Index> cell_tet;              // tet ids, increasing in each cell
+  std::vector<Index> tet_start;             // offsets into node_tet (nodes + 1)
+  std::vector<Index> node_tet;              // 4 t + corner: the node is that corner of tet t
+  bool has_volume = false;                  // false: nothing above acts
 
   // --- limited springs grouped so that no two of a colour share a node ---
   std::vector<Index> limited;       // spring ids, colour by colour
@@ -96,6 +116,7 @@ struct Model {
 
   Index node_count() const { return static_cast<Index>(rest_position.size()); }
   Index tet_count() const { return static_cast<Index>(tets.size()); }
+  Index cell_count() const { return static_cast<Index>(cell_volume.size()); }
   Index spring_count() const { return static_cast<Index>(springs.size()); }
   // Nodes that belong to bodies; the anchors of attachments come after them.
   Index body_node_count() const { return bodies.empty() ? 0 : bodies.back().nodes.end; }

@@ -8,7 +8,8 @@
 #include <limits>
 
 #include "sinew/base/parallel.h"
-#include "sinew/forces/springs.h"
+#include "sinew/forces/stiffness.h"
+#include "sinew/forces/volume_law.h"
 
 namespace sinew {
 namespace {
@@ -30,7 +31,7 @@ void apply(const Model& model, const Field& x, double a, double b, const Field& 
            Workspace& workspace, Field& y) {
   scratch = u;
   scale_nodes(model, scratch);
-  stiffness_damping_times(model, x, a, b, scratch, workspace, y);
+  stiffness_damping_times(model, x, a, b, scratch, Tangent::only_stiffening, workspace, y);
   scale_nodes(model, y);
 }
 
@@ -107,13 +108,61 @@ double positive_root(double a, double b) {
   return 4.0 / (b + std::sqrt(b * b + 4.0 * a));
 }
 
+// Sums of the absolute values of the rows of K that network and volume have, one per node: over
+// the pairs for L, over tets and cells for kappa/V (grad V)(grad V)^T and for s d2v/dx2, whose
+// blocks are the opposite edges' cross products over 6.
+std::vector<double> row_sums(const Model& model, const Field& x, const Workspace& workspace) {
+  std::vector<double> sums(x.size(), 0.0);
+  if (!model.network_start.empty()) {
+    for (std::size_t n = 0; n < x.size(); ++n) {
+      for (auto e = uz(model.network_start[n]); e < uz(model.network_start[n + 1]); ++e) {
+        sums[n] += 2.0 * std::abs(model.network_stiffness[e]);
+      }
+    }
+  }
+  if (!model.has_volume) return sums;
+  const auto area_norms = [&](std::size_t t) {
+    const Tet& tet = model.tets[t];
+    const Vec3& x0 = x[uz(tet[0])];
+    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
+    return std::array<double, 4>{g[0].norm(), g[1].norm(), g[2].norm(), g[3].norm()};
+  };
+  std::vector<double> cell_norm(model.cell_volume.size(), 0.0);
+  for (std::size_t t = 0; t < model.tets.size(); ++t) {
+    const auto norms = area_norms(t);
+    for (const Index c : model.cells[t]) {
+      if (c >= 0) cell_norm[uz(c)] += 0.25 * (norms[0] + norms[1] + norms[2] + norms[3]);
+    }
+  }
+  for (std::size_t t = 0; t < model.tets.size(); ++t) {
+    const Tet& tet = model.tets[t];
+    const auto norms = area_norms(t);
+    double bulk =
+        model.tet_bulk[t] / model.rest_volume[t] * (norms[0] + norms[1] + norms[2] + norms[3]);
+    for (const Index c : model.cells[t]) {
+      if (c >= 0)
+        bulk += 0.25 * model.cell_bulk[uz(c)] * cell_norm[uz(c)] / model.cell_volume[uz(c)];
+    }
+    double edges = 0.0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < a; ++b) edges += (x[uz(tet[a])] - x[uz(tet[b])]).norm();
+    }
+    for (std::size_t a = 0; a < 4; ++a) {
+      sums[uz(tet[a])] += bulk * norms[a] + std::abs(workspace.tet_pressure[t]) * edges / 6.0;
+    }
+  }
+  return sums;
+}
+
 // A step that is stable whatever the mesh: per node, the rows of K and C summed (Gershgorin).
-double guaranteed_step(const Model& model, Index& stiffest) {
+double guaranteed_step(const Model& model, const Field& x, const Workspace& workspace,
+                       Index& stiffest) {
+  const std::vector<double> rows = row_sums(model, x, workspace);
   double h = std::numeric_limits<double>::infinity();
   double highest = 0.0;
   for (Index i = 0; i < model.node_count(); ++i) {
     const auto n = uz(i);
-    double k = 0.0;
+    double k = rows[n];
     double c = model.drag[n] * model.mass[n];
     for (Index e = model.spring_start[n]; e < model.spring_start[n + 1]; ++e) {
       const Index spring = model.node_spring[uz(e)] >> 1;
@@ -137,7 +186,8 @@ double guaranteed_step(const Model& model, Index& stiffest) {
 
 StableStep find_stable_step(const Model& model, const Field& x, Workspace& workspace) {
   StableStep result;
-  double h = guaranteed_step(model, result.stiffest);
+  prepare_stiffness(model, x, workspace);
+  double h = guaranteed_step(model, x, workspace, result.stiffest);
   result.step = h;
   if (!std::isfinite(h)) return result;
 
@@ -173,6 +223,7 @@ StableStep find_stable_step(const Model& model, const Field& x, Workspace& works
 double watch_stable_step(const Model& model, const Field& x, double h, Field& mode,
                          Workspace& workspace) {
   Field scratch(mode.size());
+  prepare_stiffness(model, x, workspace);
   Top top =
       lanczos([&](const Field& in,
                   Field& out) { apply(model, x, h * h, 2.0 * h, in, scratch, workspace, out); },
@@ -185,6 +236,7 @@ double watch_stable_step(const Model& model, const Field& x, double h, Field& mo
 }
 
 std::string describe_spring(const Model& model, Index spring) {
+  if (spring < 0) return "none: the material itself limits the step";
   const auto s = uz(spring);
   return fmt::format("spring {} ({} to {}): k = {:.4g} N/m, l0 = {:.4g} m, c = {:.4g} N s/m",
                      spring, model.node_name(model.springs[s][0]),

@@ -13,7 +13,7 @@ struct StableStep {
   double step = 0.0;       // h_c [s]; infinity where nothing can move
   double omega_max = 0.0;  // angular frequency of the mode that limits the step [rad/s]
   double zeta = 0.0;       // its damping ratio [-]
-  Index stiffest = -1;     // spring with the largest k / m_red
+  Index stiffest = -1;     // spring with the largest k / m_red; -1: none has a stiffness
   int iterations = 0;      // products of Lanczos taken
   std::vector<Vec3> mode;  // M^1/2 times the mode that limits the step, of unit norm (nodes)
 };

@@ -1,0 +1,45 @@
+#include "sinew/forces/stiffness.h"
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/network.h"
+#include "sinew/forces/spring_law.h"
+#include "sinew/forces/springs.h"
+#include "sinew/forces/volume.h"
+
+namespace sinew {
+
+void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+  if (model.has_volume) compute_volume_forces(model, x, workspace);
+}
+
+void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double a, double b,
+                             std::span<const Vec3> u, Tangent tangent, Workspace& workspace,
+                             std::span<Vec3> out) {
+  const bool only_stiffening = tangent == Tangent::only_stiffening;
+  for (const Range& active : model.active_springs) {
+    parallel_for(active.size(), [&](Index i) {
+      const auto s = uz(active.begin + i);
+      const auto n0 = uz(model.springs[s][0]);
+      const auto n1 = uz(model.springs[s][1]);
+      const Vec3 x_ij = x[n1] - x[n0];
+      const Vec3 u_ij = u[n1] - u[n0];
+      workspace.spring_force[s] =
+          a * spring_stiffness_times(x_ij, model.stiffness[s], model.rest_length[s], u_ij,
+                                     only_stiffening) +
+          b * dashpot_times(x_ij, model.damping[s], u_ij);
+    });
+  }
+  const bool volume = model.has_volume && a != 0.0;
+  const bool network = !model.network_start.empty() && a != 0.0;
+  if (volume) compute_volume_force_change(model, x, a, u, workspace);
+  parallel_for(model.node_count(), [&](Index i) {
+    const auto n = uz(i);
+    out[n] = Vec3::Zero();
+    if (model.inverse_mass[n] == 0.0) return;
+    out[n] = b * model.drag[n] * model.mass[n] * u[n] - gather_springs(model, workspace, i);
+    if (network) out[n] -= a * network_pull(model, u, i);
+    if (volume) out[n] -= gather_tets(model, workspace, i);
+  });
+}
+
+}  // namespace sinew

@@ -1,0 +1,209 @@
+#include "sinew/forces/volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/volume_law.h"
+
+namespace sinew {
+namespace {
+
+// Stiffness of the guard [Pa]: as stiff as the volume of the tet's surroundings, which is what
+// turned it over.
+double guard_stiffness(const Model& model, std::size_t t) {
+  double bulk = model.tet_shear[t];
+  for (const Index c : model.cells[t]) {
+    if (c >= 0) bulk += 0.25 * model.cell_bulk[uz(c)];
+  }
+  return bulk;
+}
+
+double corner_volume(std::span<const Vec3> x, const Tet& t) {
+  return signed_volume(x[uz(t[0])], x[uz(t[1])], x[uz(t[2])], x[uz(t[3])]);
+}
+
+// kappa_c (J_c - 1) of every cell, from workspace.tet_volume.
+void compute_cell_pressures(const Model& model, Workspace& workspace) {
+  parallel_for(model.cell_count(), [&](Index i) {
+    const auto c = uz(i);
+    double volume = 0.0;
+    for (Index k = model.cell_start[c]; k < model.cell_start[c + 1]; ++k) {
+      volume += workspace.tet_volume[uz(model.cell_tet[uz(k)])];
+    }
+    workspace.cell_pressure[c] = model.cell_bulk[c] * (0.25 * volume / model.cell_volume[c] - 1.0);
+  });
+}
+
+double mean_of_cells(const Model& model, std::size_t t, const std::vector<double>& of_cell) {
+  double sum = 0.0;
+  for (const Index c : model.cells[t]) {
+    if (c >= 0) sum += of_cell[uz(c)];
+  }
+  return 0.25 * sum;
+}
+
+void compute_tet_volumes(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+  parallel_for(model.tet_count(),
+               [&](Index i) { workspace.tet_volume[uz(i)] = corner_volume(x, model.tets[uz(i)]); });
+}
+
+}  // namespace
+
+void add_volume_terms(Model& model, const Body& body, const std::vector<Material>& materials) {
+  const auto end = uz(body.tets.end);
+  model.tet_shear.resize(end, 0.0);
+  model.tet_bulk.resize(end, 0.0);
+  model.cells.resize(end, {-1, -1, -1, -1});
+  std::map<std::pair<Index, int>, Index> cell_of;  // (node, region) -> cell
+  for (auto t = uz(body.tets.begin); t < end; ++t) {
+    const int region = model.tet_region[t];
+    const Material& m = materials[static_cast<std::size_t>(region)];
+    if (m.law == Law::neo_hookean) model.tet_shear[t] = shear_modulus(m.young, m.poisson);
+    const Volume kept = volume_cells(m);
+    const double bulk = volume_stiffness(m);
+    if (kept == Volume::tet) model.tet_bulk[t] = bulk;
+    if (kept != Volume::node) continue;
+    for (std::size_t a = 0; a < 4; ++a) {
+      const auto [entry, added] =
+          cell_of.try_emplace({model.tets[t][a], region}, model.cell_count());
+      if (added) {
+        model.cell_volume.push_back(0.0);
+        model.cell_bulk.push_back(bulk);
+      }
+      model.cells[t][a] = entry->second;
+      model.cell_volume[uz(entry->second)] += 0.25 * model.rest_volume[t];
+    }
+  }
+}
+
+void finish_volume_terms(Model& model) {
+  model.has_volume = !model.cell_volume.empty();
+  for (std::size_t t = 0; t < model.tets.size(); ++t) {
+    model.has_volume = model.has_volume || model.tet_shear[t] > 0.0 || model.tet_bulk[t] > 0.0;
+  }
+  if (!model.has_volume) return;
+
+  const auto list = [](std::size_t count, const auto& lists, std::vector<Index>& start,
+                       std::vector<Index>& items, const auto& item_of) {
+    start.assign(count + 1, 0);
+    for (const auto& four : lists) {
+      for (const Index i : four) {
+        if (i >= 0) ++start[uz(i) + 1];
+      }
+    }
+    for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+    items.resize(uz(start.back()));
+    std::vector<Index> next(start.begin(), start.end() - 1);
+    for (std::size_t t = 0; t < lists.size(); ++t) {
+      for (std::size_t a = 0; a < 4; ++a) {
+        const Index i = lists[t][a];
+        if (i >= 0) items[uz(next[uz(i)]++)] = item_of(t, a);
+      }
+    }
+  };
+  list(model.cell_volume.size(), model.cells, model.cell_start, model.cell_tet,
+       [](std::size_t t, std::size_t) { return static_cast<Index>(t); });
+  list(model.rest_position.size(), model.tets, model.tet_start, model.node_tet,
+       [](std::size_t t, std::size_t a) { return static_cast<Index>(4 * t + a); });
+}
+
+void compute_volume_forces(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+  compute_tet_volumes(model, x, workspace);
+  compute_cell_pressures(model, workspace);
+  parallel_for(model.tet_count(), [&](Index i) {
+    const auto t = uz(i);
+    const Tet& tet = model.tets[t];
+    const double ratio = workspace.tet_volume[t] / model.rest_volume[t];
+    double pressure = -model.tet_shear[t] + model.tet_bulk[t] * (ratio - 1.0) +
+                      mean_of_cells(model, t, workspace.cell_pressure);
+    if (ratio < guard_threshold) pressure += guard_pressure(ratio, guard_stiffness(model, t));
+    workspace.tet_pressure[t] = pressure;
+    const Vec3& x0 = x[uz(tet[0])];
+    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
+    for (std::size_t a = 0; a < 4; ++a) workspace.tet_force[4 * t + a] = -pressure * g[a];
+  });
+}
+
+double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+  if (!model.has_volume) return 0.0;
+  compute_tet_volumes(model, x, workspace);
+  compute_cell_pressures(model, workspace);
+  const double of_tets = parallel_sum(model.tet_count(), [&](Index i) {
+    const auto t = uz(i);
+    const double rest = model.rest_volume[t];
+    const double ratio = workspace.tet_volume[t] / rest;
+    double w = -model.tet_shear[t] * (ratio - 1.0) +
+               0.5 * model.tet_bulk[t] * (ratio - 1.0) * (ratio - 1.0);
+    if (ratio < guard_threshold) w += guard_energy(ratio, guard_stiffness(model, t));
+    return rest * w;
+  });
+  const double of_cells = parallel_sum(model.cell_count(), [&](Index i) {
+    const auto c = uz(i);
+    if (model.cell_bulk[c] == 0.0) return 0.0;
+    const double p = workspace.cell_pressure[c];
+    return 0.5 * model.cell_volume[c] * p * p / model.cell_bulk[c];
+  });
+  return of_tets + of_cells;
+}
+
+void compute_volume_force_change(const Model& model, std::span<const Vec3> x, double a,
+                                 std::span<const Vec3> u, Workspace& workspace) {
+  // First the rate of every volume, then that of the pressures, then that of the forces.
+  parallel_for(model.tet_count(), [&](Index i) {
+    const auto t = uz(i);
+    const Tet& tet = model.tets[t];
+    const Vec3& x0 = x[uz(tet[0])];
+    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
+    double rate = 0.0;
+    for (std::size_t c = 0; c < 4; ++c) rate += g[c].dot(u[uz(tet[c])]);
+    workspace.tet_rate[t] = rate;
+  });
+  parallel_for(model.cell_count(), [&](Index i) {
+    const auto c = uz(i);
+    double rate = 0.0;
+    for (Index k = model.cell_start[c]; k < model.cell_start[c + 1]; ++k) {
+      rate += workspace.tet_rate[uz(model.cell_tet[uz(k)])];
+    }
+    workspace.cell_rate[c] = model.cell_bulk[c] * 0.25 * rate / model.cell_volume[c];
+  });
+  parallel_for(model.tet_count(), [&](Index i) {
+    const auto t = uz(i);
+    const Tet& tet = model.tets[t];
+    const double rest = model.rest_volume[t];
+    double stiffness = model.tet_bulk[t];
+    if (workspace.tet_volume[t] < guard_threshold * rest) stiffness += guard_stiffness(model, t);
+    const double rate =
+        stiffness * workspace.tet_rate[t] / rest + mean_of_cells(model, t, workspace.cell_rate);
+    const double pressure = workspace.tet_pressure[t];
+    const Vec3& x0 = x[uz(tet[0])];
+    const Vec3& u0 = u[uz(tet[0])];
+    const std::array<Vec3, 3> e = {x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0};
+    const std::array<Vec3, 3> d = {u[uz(tet[1])] - u0, u[uz(tet[2])] - u0, u[uz(tet[3])] - u0};
+    const Corners g = volume_gradient(e[0], e[1], e[2]);
+    const Corners dg = volume_gradient_change(e[0], e[1], e[2], d[0], d[1], d[2]);
+    for (std::size_t c = 0; c < 4; ++c) {
+      workspace.tet_force[4 * t + c] = -a * (rate * g[c] + pressure * dg[c]);
+    }
+  });
+}
+
+double largest_cell_change(const Model& model, std::span<const Vec3> x) {
+  return parallel_reduce(
+      model.cell_count(), 0.0,
+      [&](Range r) {
+        double largest = 0.0;
+        for (Index i = r.begin; i < r.end; ++i) {
+          double volume = 0.0;
+          for (Index k = model.cell_start[uz(i)]; k < model.cell_start[uz(i) + 1]; ++k) {
+            volume += 0.25 * corner_volume(x, model.tets[uz(model.cell_tet[uz(k)])]);
+          }
+          largest = std::max(largest, std::abs(volume / model.cell_volume[uz(i)] - 1.0));
+        }
+        return largest;
+      },
+      [](double a, double b) { return std::max(a, b); });
+}
+
+}  // namespace sinew

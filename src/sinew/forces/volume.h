@@ -1,0 +1,52 @@
+// Volume terms: what keeps the volume of tets and node cells, and the push of the network law.
+//
+//   W(x) = sum_t [ -mu_t (v_t - V_t) + V_t kappa_t/2 (v_t/V_t - 1)^2 + guard ]
+//        + sum_c V_c kappa_c/2 (J_c - 1)^2,   J_c = (sum of its tets' v_t / 4) / V_c
+//
+// so that the force on node i is -sum_{t at i} s_t dv_t/dx_i with the tet's pressure
+//   s_t = -mu_t + kappa_t (v_t/V_t - 1) + (mean over its corners of kappa_c (J_c - 1)) + guard.
+// docs/methods/volume.md.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/mesh/tet_mesh.h"
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+// Appends the volume terms of a body's tets, the model's last ones: tet_shear, tet_bulk and the
+// node cells, split by region.
+void add_volume_terms(Model& model, const Body& body, const std::vector<Material>& materials);
+
+// Derives the lists cell -> tets and node -> tets; called once, by finish().
+void finish_volume_terms(Model& model);
+
+// Fills workspace.tet_pressure (s_t) and workspace.tet_force (on the corners) at positions x.
+void compute_volume_forces(const Model& model, std::span<const Vec3> x, Workspace& workspace);
+
+// W [J]: zero at rest.
+double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace);
+
+// Fills workspace.tet_force with what a displacement u changes the corner forces by, to first
+// order and with the sign of a force: -a H u. Expects workspace.tet_pressure and tet_volume as
+// compute_volume_forces leaves them at x.
+void compute_volume_force_change(const Model& model, std::span<const Vec3> x, double a,
+                                 std::span<const Vec3> u, Workspace& workspace);
+
+// Sum, for a node in the fixed order of its tets, of what workspace.tet_force holds.
+inline Vec3 gather_tets(const Model& model, const Workspace& workspace, Index node) {
+  Vec3 sum = Vec3::Zero();
+  const auto n = uz(node);
+  for (Index k = model.tet_start[n]; k < model.tet_start[n + 1]; ++k) {
+    sum += workspace.tet_force[uz(model.node_tet[uz(k)])];
+  }
+  return sum;
+}
+
+// Largest |J_c - 1| over the node cells [-]; 0 where there are none.
+double largest_cell_change(const Model& model, std::span<const Vec3> x);
+
+}  // namespace sinew
