@@ -163,6 +163,10 @@ TEST(Shapes, WrongArguments) {
               beam({1, 1, 1}, {1, 1, -4});
             }),
             "beam: cells[2] is -4, expected 1 or more");
+  EXPECT_EQ(message_of([] {
+              box({1, 1, 1}, {1, 1, 4}, 0.5);
+            }),
+            "box: jitter is 0.5, expected a share from 0 to 0.45");
   EXPECT_EQ(message_of([] { sphere(-1, 3); }),
             "sphere: radius is -1, expected a length from 1e-6 to 1e6 m");
   EXPECT_EQ(message_of([] {

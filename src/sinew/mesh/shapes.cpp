@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sinew/base/error.h"
+#include "sinew/mesh/jitter.h"
 
 namespace sinew {
 namespace {
@@ -37,7 +38,7 @@ void require_tets(const char* shape, const char* name, double tets) {
 }
 
 void require_grid(const char* shape, const Vec3& size, const std::array<Index, 3>& cells,
-                  int tets_per_cell) {
+                  double jitter, int tets_per_cell) {
   constexpr std::array<const char*, 3> kSize = {"size[0]", "size[1]", "size[2]"};
   constexpr std::array<const char*, 3> kCells = {"cells[0]", "cells[1]", "cells[2]"};
   double tets = tets_per_cell;
@@ -47,12 +48,21 @@ void require_grid(const char* shape, const Vec3& size, const std::array<Index, 3
     tets *= cells[axis];
   }
   require_tets(shape, "cells", tets);
+  if (!(jitter >= 0.0 && jitter <= kMaxJitter))
+    throw Error(
+        ErrorKind::input,
+        fmt::format("{}: jitter is {}, expected a share from 0 to {}", shape, jitter, kMaxJitter),
+        "0.2 makes an irregular mesh");
+}
+
+Vec3 cell_size(const Vec3& size, const std::array<Index, 3>& cells) {
+  return {size.x() / cells[0], size.y() / cells[1], size.z() / cells[2]};
 }
 
 // The nodes of a grid of cells, x fastest, from origin to origin + size; no tets yet.
 TetMesh grid_nodes(const Vec3& origin, const Vec3& size, const std::array<Index, 3>& cells) {
   const auto [nx, ny, nz] = cells;
-  const Vec3 h(size.x() / nx, size.y() / ny, size.z() / nz);
+  const Vec3 h = cell_size(size, cells);
   TetMesh mesh;
   mesh.nodes.reserve((uz(nx) + 1) * (uz(ny) + 1) * (uz(nz) + 1));
   for (Index l = 0; l <= nz; ++l) {
@@ -91,10 +101,10 @@ void for_each_cell(const std::array<Index, 3>& cells, F&& f) {
 
 }  // namespace
 
-TetMesh beam(const Vec3& size, const std::array<Index, 3>& cells) {
+TetMesh beam(const Vec3& size, const std::array<Index, 3>& cells, double jitter) {
   constexpr int kTets[5][4] = {
       {0, 1, 3, 5}, {0, 3, 2, 6}, {0, 5, 6, 4}, {3, 6, 5, 7}, {0, 3, 6, 5}};
-  require_grid("beam", size, cells, 5);
+  require_grid("beam", size, cells, jitter, 5);
   TetMesh mesh = grid_nodes({-size.x() / 2, -size.y() / 2, 0}, size, cells);
   mesh.tets.reserve(5 * uz(cells[0]) * uz(cells[1]) * uz(cells[2]));
   for_each_cell(cells, [&](Index i, Index j, Index l, const std::array<Index, 8>& corners) {
@@ -105,18 +115,20 @@ TetMesh beam(const Vec3& size, const std::array<Index, 3>& cells) {
       add_positive_tet(mesh, nodes);
     }
   });
+  jitter_grid(mesh, cells, cell_size(size, cells), jitter);
   return mesh;
 }
 
-TetMesh box(const Vec3& size, const std::array<Index, 3>& cells) {
+TetMesh box(const Vec3& size, const std::array<Index, 3>& cells, double jitter) {
   // A path from corner 0 to corner 7 for every order of the three axes.
   constexpr std::size_t kPaths[6][2] = {{1, 3}, {1, 5}, {2, 3}, {2, 6}, {4, 5}, {4, 6}};
-  require_grid("box", size, cells, 6);
+  require_grid("box", size, cells, jitter, 6);
   TetMesh mesh = grid_nodes(-size / 2, size, cells);
   mesh.tets.reserve(6 * uz(cells[0]) * uz(cells[1]) * uz(cells[2]));
   for_each_cell(cells, [&](Index, Index, Index, const std::array<Index, 8>& c) {
     for (const auto& [a, b] : kPaths) add_positive_tet(mesh, {c[0], c[a], c[b], c[7]});
   });
+  jitter_grid(mesh, cells, cell_size(size, cells), jitter);
   return mesh;
 }
 

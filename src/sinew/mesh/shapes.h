@@ -17,11 +17,13 @@ constexpr std::int64_t kMaxShapeTets = 20'000'000;
 // (l (ny + 1) + j) (nx + 1) + i lies at (i size.x / nx - size.x / 2, j size.y / ny - size.y / 2,
 // l size.z / nz). Size {0.1, 0.1, 0.4} [m] with cells {k, k, 4 k} is the workload W(k) of the
 // benchmarks: 20 k^3 tets. Smallest dihedral angle of cubic cells: 54.7 degrees.
-TetMesh beam(const Vec3& size, const std::array<Index, 3>& cells);
+// jitter [-], from 0 to 0.45: the nodes move at random by up to this share of a cell's edge, those
+// on the surface within it (jitter.h).
+TetMesh beam(const Vec3& size, const std::array<Index, 3>& cells, double jitter = 0.0);
 
 // Six tets a cell around the diagonal (Kuhn's subdivision), centred at the origin, numbered like
-// beam. Smallest dihedral angle of cubic cells: 45 degrees.
-TetMesh box(const Vec3& size, const std::array<Index, 3>& cells);
+// beam, and jittered like it. Smallest dihedral angle of cubic cells: 45 degrees.
+TetMesh box(const Vec3& size, const std::array<Index, 3>& cells, double jitter = 0.0);
 
 // A ball around the origin: an icosahedron cut into its 20 sectors, each divided into resolution^3
 // tets, its shells moved out to spheres. 20 resolution^3 tets, 20 resolution^2 surface triangles,

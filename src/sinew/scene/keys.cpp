@@ -82,6 +82,7 @@ KeyTables make_tables() {
                 word("shape", "", "beam box sphere ellipsoid cylinder"),
                 other("cells", T::cells, "", "[4, 4, 16]", from_to(1, 20'000'000)),
                 point("size", "m", "[0.1, 0.1, 0.4]", positive),
+                number("jitter", "", "0", from_to(0, 0.45)),
                 number("radius", "m", "0.05", positive),
                 point("radii", "m", "[0.1, 0.1, 0.1]", positive),
                 number("height", "m", "0.2", positive),

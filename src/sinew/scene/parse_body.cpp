@@ -18,9 +18,10 @@ struct ShapeKey {
   std::string_view key;
   std::string_view shapes;
 };
-constexpr std::array<ShapeKey, 6> shape_keys = {{
+constexpr std::array<ShapeKey, 7> shape_keys = {{
     {"cells", "beam box"},
     {"size", "beam box"},
+    {"jitter", "beam box"},
     {"radius", "sphere cylinder"},
     {"radii", "ellipsoid"},
     {"height", "cylinder"},
@@ -58,6 +59,7 @@ void parse_source(const Reader& reader, SceneBody& body) {
 
   reader.cells("cells", body.cells);
   reader.point("size", body.size);
+  reader.number("jitter", body.jitter);
   reader.number("radius", body.radius);
   reader.point("radii", body.radii);
   reader.number("height", body.height);

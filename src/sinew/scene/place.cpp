@@ -52,8 +52,8 @@ TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source
 
 TetMesh make_shape(const SceneBody& body) {
   try {
-    if (body.shape == "beam") return beam(body.size, body.cells);
-    if (body.shape == "box") return box(body.size, body.cells);
+    if (body.shape == "beam") return beam(body.size, body.cells, body.jitter);
+    if (body.shape == "box") return box(body.size, body.cells, body.jitter);
     if (body.shape == "sphere") return sphere(body.radius, body.resolution);
     if (body.shape == "ellipsoid") return ellipsoid(body.radii, body.resolution);
     if (body.shape == "cylinder") return cylinder(body.radius, body.height, body.resolution);

@@ -63,6 +63,7 @@ struct SceneBody {
   std::string shape;                      // beam, box, sphere, ellipsoid, cylinder
   std::array<int, 3> cells = {4, 4, 16};  // beam, box
   Vec3 size = Vec3(0.1, 0.1, 0.4);        // beam, box [m]
+  double jitter = 0.0;                    // beam, box: share of a cell's edge
   Vec3 radii = Vec3(0.1, 0.1, 0.1);       // ellipsoid [m]
   double radius = 0.05;                   // sphere, cylinder [m]
   double height = 0.2;                    // cylinder, along z [m]
