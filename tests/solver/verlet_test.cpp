@@ -8,6 +8,7 @@
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/forces/limits.h"
+#include "sinew/forces/loads.h"
 #include "sinew/forces/terms.h"
 #include "sinew/solver/stable_step.h"
 #include "tests/support/models.h"

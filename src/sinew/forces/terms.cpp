@@ -1,19 +1,13 @@
 #include "sinew/forces/terms.h"
 
-#include <algorithm>
-
 #include "sinew/base/parallel.h"
+#include "sinew/forces/loads.h"
 #include "sinew/forces/network.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
 
 namespace sinew {
-
-double load_share(const Load& load, double t) {
-  if (t < load.start || t > load.end) return 0.0;
-  return load.ramp > 0.0 ? std::min(1.0, (t - load.start) / load.ramp) : 1.0;
-}
 
 double compute_forces(const Model& model, const State& state, Workspace& workspace) {
   double power = compute_spring_forces(model, state, workspace);
@@ -39,15 +33,7 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
   });
   for (const double p : workspace.partial) power += p;
 
-  for (const Load& load : model.loads) {
-    const double share = load_share(load, state.time);
-    if (share == 0.0) continue;
-    const Vec3 each = load.force * (share / static_cast<double>(load.nodes.size()));
-    for (const Index i : load.nodes) {
-      const auto k = uz(i);
-      if (model.inverse_mass[k] > 0.0) workspace.force[k] += each;
-    }
-  }
+  add_load_forces(model, state.position, state.time, 1.0, workspace.force);
   return power;
 }
 

@@ -15,9 +15,6 @@ namespace sinew {
 // Returns the power [W] that dashpots and drag turn into heat.
 double compute_forces(const Model& model, const State& state, Workspace& workspace);
 
-// Share of a load that acts at time t: 0 outside [start, end], growing linearly over the ramp.
-double load_share(const Load& load, double t);
-
 // The talk's velocity, v(t) = (x(t+h) - x(t-h)) / 2h = w + a h / 2, with w the half-step velocity
 // before t and h the last step; where the motion is given (pins) the half-step velocity itself.
 // Expects compute_forces to have filled workspace.force.

@@ -69,6 +69,10 @@ std::uint64_t Model::hash() const {
     h.value(load.start);
     h.value(load.end);
     h.value(load.ramp);
+    h.array(load.faces);
+    h.array(load.rest_area);
+    hash_vec(h, load.traction);
+    h.value(load.pressure);
   }
   for (const Probe& probe : probes) {
     h.text(probe.name);

@@ -31,7 +31,7 @@ struct Pin {
   Path path;
 };
 
-// A force on a set of nodes while it lasts.
+// A force while it lasts: on a set of nodes, or by area on faces of the surface (forces/loads.h).
 struct Load {
   std::string name;
   std::vector<Index> nodes;
@@ -39,6 +39,11 @@ struct Load {
   double start = 0.0;         // [s]
   double end = no_limit;      // [s]
   double ramp = 0.0;          // [s] grows linearly from 0 over this time after start
+  // On faces, where there are any:
+  std::vector<Triangle> faces = {};    // node ids, counter-clockwise seen from outside
+  std::vector<double> rest_area = {};  // [m2] (faces)
+  Vec3 traction = Vec3::Zero();        // [Pa] per rest area, of constant direction
+  double pressure = 0.0;               // [Pa] along the inward normal of the face as it is
 };
 
 // The half-space that bodies rest on.

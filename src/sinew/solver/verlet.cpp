@@ -9,6 +9,7 @@
 #include "sinew/base/parallel.h"
 #include "sinew/contact/ground.h"
 #include "sinew/forces/limits.h"
+#include "sinew/forces/loads.h"
 #include "sinew/forces/terms.h"
 
 namespace sinew {
@@ -55,21 +56,15 @@ void move_pins(const Model& model, const Workspace& workspace, double h, State& 
   }
 }
 
-// Work of the loads over the step, with v(t) = (w before + w after) / 2; called after the move.
+// Work of the loads over the step, with v(t) = (w before + w after) / 2; called before the move.
 void add_work_of_loads(const Model& model, const Workspace& workspace, double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
-  for (const Load& load : model.loads) {
-    const double share = load_share(load, state.time);
-    if (share == 0.0) continue;
-    const Vec3 each = load.force * (share / static_cast<double>(load.nodes.size()));
-    for (const Index node : load.nodes) {
-      const auto k = uz(node);
-      if (model.inverse_mass[k] == 0.0) continue;
-      const Vec3 v =
-          state.half_velocity[k] - (0.5 * kick * model.inverse_mass[k]) * workspace.force[k];
-      state.energy.work_in += kick * each.dot(v);
-    }
-  }
+  for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& force) {
+    const auto k = uz(node);
+    const Vec3 v =
+        state.half_velocity[k] + (0.5 * kick * model.inverse_mass[k]) * workspace.force[k];
+    state.energy.work_in += kick * force.dot(v);
+  });
 }
 
 // Projects the limits, with the ground as a constraint among them; velocities follow.
@@ -140,8 +135,8 @@ Index suspect_spring(const Model& model, const Workspace& workspace, Index node)
 VerletReport verlet_step(const Model& model, double h, State& state, Workspace& workspace) {
   VerletReport report;
   state.energy.dissipated += h * compute_forces(model, state, workspace);
-  const Index broken = move_free_nodes(model, workspace, h, state);
   add_work_of_loads(model, workspace, h, state);
+  const Index broken = move_free_nodes(model, workspace, h, state);
   move_pins(model, workspace, h, state);
   if (broken == none) {
     if (model.ground) {

@@ -1,0 +1,56 @@
+// Loads: forces on nodes, tractions and pressures on surface triangles, while they last.
+//
+//   force      f_i = force / nodes                 on every node
+//   traction   f_i = traction A / 3                on the corners of a triangle of rest area A
+//   pressure   f_i = -p (x1 - x0) x (x2 - x0) / 6  on the corners of a triangle as it is now:
+//              along its inward normal, and as large as its area (Bonet and Wood 2008, 8.5)
+#pragma once
+
+#include <span>
+
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+// Share of a load that acts at time t: 0 outside [start, end], growing linearly over the ramp.
+double load_share(const Load& load, double t);
+
+// The triangle's area times its outward unit normal [m2].
+inline Vec3 area_vector(std::span<const Vec3> x, const Triangle& t) {
+  return 0.5 * (x[uz(t[1])] - x[uz(t[0])]).cross(x[uz(t[2])] - x[uz(t[0])]);
+}
+
+// Calls f(node, force [N]) for what every load that acts at `time` puts on a node that is free to
+// move: as often as the node is in a load or is a corner of its faces, always in the same order.
+template <typename F>
+void for_each_load_force(const Model& model, std::span<const Vec3> x, double time, const F& f) {
+  const auto on_free = [&](Index node, const Vec3& force) {
+    if (model.inverse_mass[uz(node)] > 0.0) f(node, force);
+  };
+  for (const Load& load : model.loads) {
+    const double share = load_share(load, time);
+    if (share == 0.0) continue;
+    if (load.faces.empty()) {
+      const Vec3 each = load.force * (share / static_cast<double>(load.nodes.size()));
+      for (const Index node : load.nodes) on_free(node, each);
+    }
+    for (std::size_t i = 0; i < load.faces.size(); ++i) {
+      const Vec3 all =
+          load.rest_area[i] * load.traction - load.pressure * area_vector(x, load.faces[i]);
+      for (const Index corner : load.faces[i]) on_free(corner, share / 3.0 * all);
+    }
+  }
+}
+
+// Adds the loads' forces at positions x and `time`, times `scale`, to `forces` [N] (nodes).
+void add_load_forces(const Model& model, std::span<const Vec3> x, double time, double scale,
+                     std::span<Vec3> forces);
+
+// What the loads could still do [J], times `scale`, 0 at rest: its negative gradient by the free
+// nodes is their force. For a force or a traction -f . (x - X); for a pressure p times the change
+// of the volume under the faces. That is exact where the faces close a surface, or the nodes on the
+// rim of what they leave open are pinned; elsewhere a pressure that follows the surface has no
+// potential.
+double load_potential(const Model& model, std::span<const Vec3> x, double time, double scale);
+
+}  // namespace sinew
