@@ -115,9 +115,14 @@ std::string format_table(const Summary& s) {
                             grouped(b.tets), mass_text(b.mass)));
     row("law", fmt::format("{}, {} springs", b.laws, grouped(b.springs)));
   }
-  row("step",
-      fmt::format("{} ({}; stable up to {}), {} steps", scaled(s.dt, "s"),
-                  s.dt_auto ? "auto" : "given", scaled(s.stable_step, "s"), grouped(s.steps)));
+  if (s.stepper == "static") {
+    row("rest", fmt::format("residual {:.2g} after {} Newton steps, {} products", s.residual,
+                            grouped(s.newton_steps), grouped(s.products)));
+  } else {
+    row("step",
+        fmt::format("{} ({}; stable up to {}), {} steps", scaled(s.dt, "s"),
+                    s.dt_auto ? "auto" : "given", scaled(s.stable_step, "s"), grouped(s.steps)));
+  }
   row("wall time", fmt::format("{:.2f} s for {:.2f} s simulated: {:.2f}x real time", s.wall_seconds,
                                s.sim_seconds, s.realtime_factor()));
   row("energy", fmt::format("kinetic {}, elastic {}, gravity {}", scaled(s.energy.kinetic, "J"),

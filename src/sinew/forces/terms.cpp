@@ -9,6 +9,20 @@
 
 namespace sinew {
 
+namespace {
+
+// Minus the work of gravity and loads on the free nodes since the rest positions [J].
+double outer_potential(const Model& model, const State& state) {
+  const double gravity = parallel_sum(model.node_count(), [&](Index i) {
+    const auto k = uz(i);
+    if (model.inverse_mass[k] == 0.0) return 0.0;
+    return -model.mass[k] * model.gravity.dot(state.position[k] - model.rest_position[k]);
+  });
+  return gravity + load_potential(model, state.position, state.time, 1.0);
+}
+
+}  // namespace
+
 double compute_forces(const Model& model, const State& state, Workspace& workspace) {
   double power = compute_spring_forces(model, state, workspace);
   if (model.has_volume) compute_volume_forces(model, state.position, workspace);
@@ -49,6 +63,19 @@ std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
 
 double elastic_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
   return spring_energy(model, x) + network_energy(model, x) + volume_energy(model, x, workspace);
+}
+
+std::vector<Vec3> outer_forces(const Model& model, const State& state) {
+  std::vector<Vec3> f(model.rest_position.size(), Vec3::Zero());
+  parallel_for(model.node_count(), [&](Index i) {
+    if (model.inverse_mass[uz(i)] > 0.0) f[uz(i)] = model.mass[uz(i)] * model.gravity;
+  });
+  add_load_forces(model, state.position, state.time, 1.0, f);
+  return f;
+}
+
+double potential_energy(const Model& model, const State& state, Workspace& workspace) {
+  return elastic_energy(model, state.position, workspace) + outer_potential(model, state);
 }
 
 Energies measure_energies(const Model& model, const State& state, Workspace& workspace) {

@@ -24,6 +24,13 @@ std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
 // What springs, network and volume store at positions x [J]; 0 at rest.
 double elastic_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace);
 
+// What the rest state minimises [J]: elastic energy plus that of gravity and of the loads at
+// state.time, 0 at the rest positions.
+double potential_energy(const Model& model, const State& state, Workspace& workspace);
+
+// Gravity and the loads at state.time on the free nodes [N], 0 on the others.
+std::vector<Vec3> outer_forces(const Model& model, const State& state);
+
 struct Energies {
   double kinetic = 0.0;     // [J] of the nodes that are free to move, with the talk's velocity
   double elastic = 0.0;     // [J] in springs, network and volume

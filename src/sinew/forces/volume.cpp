@@ -49,18 +49,34 @@ void compute_tet_volumes(const Model& model, std::span<const Vec3> x, Workspace&
                [&](Index i) { workspace.tet_volume[uz(i)] = corner_volume(x, model.tets[uz(i)]); });
 }
 
+// workspace.tet_rate: what u changes every tet's volume by, to first order.
+void compute_tet_rates(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
+                       Workspace& workspace) {
+  parallel_for(model.tet_count(), [&](Index i) {
+    const auto t = uz(i);
+    const Tet& tet = model.tets[t];
+    const Vec3& x0 = x[uz(tet[0])];
+    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
+    double rate = 0.0;
+    for (std::size_t c = 0; c < 4; ++c) rate += g[c].dot(u[uz(tet[c])]);
+    workspace.tet_rate[t] = rate;
+  });
+}
+
 }  // namespace
 
 void add_volume_terms(Model& model, const Body& body, const std::vector<Material>& materials) {
   const auto end = uz(body.tets.end);
   model.tet_shear.resize(end, 0.0);
   model.tet_bulk.resize(end, 0.0);
+  model.tet_modulus.resize(end, 0.0);
   model.cells.resize(end, {-1, -1, -1, -1});
   std::map<std::pair<Index, int>, Index> cell_of;  // (node, region) -> cell
   for (auto t = uz(body.tets.begin); t < end; ++t) {
     const int region = model.tet_region[t];
     const Material& m = materials[static_cast<std::size_t>(region)];
-    if (m.law == Law::neo_hookean) model.tet_shear[t] = shear_modulus(m.young, m.poisson);
+    model.tet_modulus[t] = shear_modulus(m.young, m.poisson);
+    if (m.law == Law::neo_hookean) model.tet_shear[t] = model.tet_modulus[t];
     const Volume kept = volume_cells(m);
     const double bulk = volume_stiffness(m);
     if (kept == Volume::tet) model.tet_bulk[t] = bulk;
@@ -151,15 +167,7 @@ double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& wor
 void compute_volume_force_change(const Model& model, std::span<const Vec3> x, double a,
                                  std::span<const Vec3> u, Workspace& workspace) {
   // First the rate of every volume, then that of the pressures, then that of the forces.
-  parallel_for(model.tet_count(), [&](Index i) {
-    const auto t = uz(i);
-    const Tet& tet = model.tets[t];
-    const Vec3& x0 = x[uz(tet[0])];
-    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
-    double rate = 0.0;
-    for (std::size_t c = 0; c < 4; ++c) rate += g[c].dot(u[uz(tet[c])]);
-    workspace.tet_rate[t] = rate;
-  });
+  compute_tet_rates(model, x, u, workspace);
   parallel_for(model.cell_count(), [&](Index i) {
     const auto c = uz(i);
     double rate = 0.0;
@@ -186,6 +194,38 @@ void compute_volume_force_change(const Model& model, std::span<const Vec3> x, do
     for (std::size_t c = 0; c < 4; ++c) {
       workspace.tet_force[4 * t + c] = -a * (rate * g[c] + pressure * dg[c]);
     }
+  });
+}
+
+void relax_volume(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
+                  Workspace& workspace) {
+  compute_tet_rates(model, x, u, workspace);
+  // Pressure that the change of volume calls up, with the shear stiffness of the surroundings in
+  // series: 1 / (1/kappa + 3/mu) instead of kappa.
+  const auto series = [](double kappa, double mu) {
+    return kappa > 0.0 ? kappa * mu / (3.0 * kappa + mu) : 0.0;
+  };
+  parallel_for(model.cell_count(), [&](Index i) {
+    const auto c = uz(i);
+    double rate = 0.0;
+    double shear = 0.0;
+    for (Index k = model.cell_start[c]; k < model.cell_start[c + 1]; ++k) {
+      const auto t = uz(model.cell_tet[uz(k)]);
+      rate += 0.25 * workspace.tet_rate[t];
+      shear += 0.25 * model.rest_volume[t] * model.tet_modulus[t];
+    }
+    const double volume = model.cell_volume[c];
+    workspace.cell_rate[c] = series(model.cell_bulk[c], shear / volume) * rate / volume;
+  });
+  parallel_for(model.tet_count(), [&](Index i) {
+    const auto t = uz(i);
+    const Tet& tet = model.tets[t];
+    const double pressure = mean_of_cells(model, t, workspace.cell_rate) +
+                            series(model.tet_bulk[t], model.tet_modulus[t]) *
+                                workspace.tet_rate[t] / model.rest_volume[t];
+    const Vec3& x0 = x[uz(tet[0])];
+    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
+    for (std::size_t c = 0; c < 4; ++c) workspace.tet_force[4 * t + c] = pressure * g[c];
   });
 }
 

@@ -36,6 +36,12 @@ double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& wor
 void compute_volume_force_change(const Model& model, std::span<const Vec3> x, double a,
                                  std::span<const Vec3> u, Workspace& workspace);
 
+// Fills workspace.tet_force with B^T D B u: B u the change of the volumes, D their stiffness with
+// the shear stiffness of the surroundings in series. What a preconditioner needs to see a nearly
+// incompressible material as it is (solver/static.h).
+void relax_volume(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
+                  Workspace& workspace);
+
 // Sum, for a node in the fixed order of its tets, of what workspace.tet_force holds.
 inline Vec3 gather_tets(const Model& model, const Workspace& workspace, Index node) {
   Vec3 sum = Vec3::Zero();

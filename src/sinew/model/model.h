@@ -96,6 +96,7 @@ struct Model {
   // --- volume: what every tet's own volume does, and the cells that tets share ---
   std::vector<double> tet_shear;            // mu_t [Pa] (tets), 0 under classic laws: the push
                                             // outwards that balances the network's pull
+  std::vector<double> tet_modulus;          // shear modulus of the material [Pa] (tets), all laws
   std::vector<double> tet_bulk;             // kappa_t [Pa] (tets), 0: the tet's volume is free
   std::vector<std::array<Index, 4>> cells;  // cell of each corner (tets), -1: none
   std::vector<double> cell_volume;          // V_c = sum of its tets' V / 4 [m3] (cells)

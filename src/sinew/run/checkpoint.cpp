@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view magic = "SINEWCP1";
+constexpr std::string_view magic = "SINEWCP2";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>
@@ -39,6 +39,9 @@ void visit(Archive& a, Run& r) {
   a.value(r.limit_sweeps);
   a.value(r.unmet_limits);
   a.value(r.contacts);
+  a.value(r.newton_steps);
+  a.value(r.products);
+  a.value(r.residual);
   a.value(r.peak_stretch);
   a.value(r.peak_compress);
   a.value(r.start_energy);

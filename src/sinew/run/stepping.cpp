@@ -39,6 +39,17 @@ double typed_step(double h) {
       Location{scene.file});
 }
 
+// Rest states differ from frame to frame only where pins or loads change with time.
+bool changes_with_time(const Model& model) {
+  for (const Pin& pin : model.pins) {
+    if (!pin.path.keys.empty()) return true;
+  }
+  for (const Load& load : model.loads) {
+    if (load.start > 0.0 || load.ramp > 0.0 || load.end < no_limit) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
@@ -48,7 +59,14 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
       allow_unstable_(scene.allow_unstable),
       safety_(scene.safety),
       duration_(scene.duration),
-      interval_(1.0 / scene.output.fps) {
+      interval_(1.0 / scene.output.fps),
+      tolerance_(scene.tolerance) {
+  if (scene.stepper == "static") {
+    static_ = std::make_unique<StaticSolver>(model);
+    if (!changes_with_time(model)) interval_ = duration_;
+    frames_ = round_up(duration_ / interval_);
+    return;
+  }
   if (!automatic_) interval_ = std::max(interval_, *scene.dt / scene.substeps);
   frames_ = round_up(duration_ / interval_);
   if (run.target_step > 0.0) return;  // goes on from a checkpoint
@@ -104,7 +122,21 @@ void Stepping::watch(RunState& run) {
   }
 }
 
+bool Stepping::rest_frame(RunState& run, const std::atomic<bool>* stop) {
+  StaticOptions options;
+  options.tolerance = tolerance_;
+  options.stop = stop;
+  const StaticReport report = static_->solve(frame_end(run.frame + 1), options, run.state);
+  run.newton_steps += report.newton;
+  run.products += report.products;
+  run.residual = report.residual;
+  if (report.stopped) return false;
+  ++run.frame;
+  return true;
+}
+
 bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
+  if (static_) return rest_frame(run, stop);
   if (run.steps_left == 0) begin_frame(run);
   while (run.steps_left > 0) {
     if (run.steps_to_watch == 0) watch(run);

@@ -1,15 +1,18 @@
-// Chooses the steps of a run: fixed, or as the stable step asks. Everything that decides the next
-// step is in RunState, so that a run can be cut anywhere and go on to the same bits.
+// Chooses the steps of a run: fixed, or as the stable step asks; or rest states, one per frame.
+// Everything that decides the next step is in RunState, so that a run can be cut anywhere and go on
+// to the same bits.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
 #include "sinew/scene/scene.h"
 #include "sinew/solver/stable_step.h"
+#include "sinew/solver/static.h"
 
 namespace sinew {
 
@@ -29,6 +32,9 @@ struct RunState {
   std::int64_t limit_sweeps = 0;      // sweeps over limited springs in all
   std::int64_t unmet_limits = 0;      // steps that ended with a limit violated
   std::int64_t contacts = 0;          // nodes on the ground in the last step
+  std::int64_t newton_steps = 0;      // of the static stepper, in all
+  std::int64_t products = 0;          // Hessian products it took, in all
+  double residual = 0.0;              // of the last rest state found, see StaticReport [-]
   double peak_stretch = 0.0;          // over the frames [-]
   double peak_compress = 0.0;         // over the frames [-]
   double start_energy = 0.0;          // total at the start [J]
@@ -38,12 +44,12 @@ struct RunState {
 
 class Stepping {
  public:
-  // Checks the scene's dt against the stable step of the model as it starts.
+  // stepper = "verlet": checks the scene's dt against the stable step of the model as it starts.
   // Throws Error(unstable) where dt / substeps is above it and the scene does not allow that.
   Stepping(const Scene& scene, const Model& model, RunState& run);
 
   // Runs to the end of the next frame, or until `stop` is set after a step. Returns true when the
-  // frame is finished. Throws Error(diverged), see verlet_step.
+  // frame is finished. Throws Error(diverged), see verlet_step and StaticSolver::solve.
   bool advance_frame(RunState& run, const std::atomic<bool>* stop);
 
   std::int64_t frame_count() const { return frames_; }
@@ -53,6 +59,7 @@ class Stepping {
   double frame_end(std::int64_t frame) const;
   void begin_frame(RunState& run) const;
   void watch(RunState& run);
+  bool rest_frame(RunState& run, const std::atomic<bool>* stop);
 
   const Model& model_;
   Workspace workspace_;
@@ -62,6 +69,8 @@ class Stepping {
   double duration_;
   double interval_;  // between frames [s]
   std::int64_t frames_;
+  double tolerance_;                      // of rest states
+  std::unique_ptr<StaticSolver> static_;  // stepper = "static"
 };
 
 }  // namespace sinew

@@ -5,6 +5,7 @@
 #include "sinew/base/hash.h"
 #include "sinew/forces/limits.h"
 #include "sinew/forces/springs.h"
+#include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
 
 namespace sinew {
@@ -93,6 +94,10 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.unmet_limits = run.unmet_limits;
   s.limit_violation = measure_limit_violation(model, x);
   s.step_reductions = run.step_reductions;
+  s.newton_steps = run.newton_steps;
+  s.products = run.products;
+  s.residual = run.residual;
+  s.largest_cell_change = largest_cell_change(model, x);
   s.probes = read_probes(model, x);
   return s;
 }
@@ -131,6 +136,8 @@ nlohmann::ordered_json to_json(const Summary& s) {
           {"stable_step", std::isfinite(s.stable_step) ? nlohmann::ordered_json(s.stable_step)
                                                        : nlohmann::ordered_json()},
           {"step_reductions", s.step_reductions},
+          {"static",
+           {{"newton_steps", s.newton_steps}, {"products", s.products}, {"residual", s.residual}}},
           {"steps", s.steps},
           {"frames", s.frames},
           {"sim_seconds", s.sim_seconds},
@@ -144,6 +151,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
             {"work_in", s.energy.work_in},
             {"drift", s.energy_drift}}},
           {"volume_ratio", s.volume_ratio},
+          {"largest_cell_change", s.largest_cell_change},
           {"inverted_tets", s.inverted_tets},
           {"max_stretch", s.max_stretch},
           {"max_compress", s.max_compress},

@@ -51,6 +51,9 @@ struct Summary {
   std::int64_t limit_sweeps = 0, unmet_limits = 0;
   double limit_violation = 0.0;  // at the end, as a share of the rest length
   std::int64_t step_reductions = 0;
+  std::int64_t newton_steps = 0, products = 0;  // static
+  double residual = 0.0;                        // static: |f| over what the nodes carry
+  double largest_cell_change = 0.0;             // of a node cell's volume, at the end [-]
   std::vector<ProbeReading> probes;
   std::vector<std::string> warnings;
 

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "sinew/scene/parse.h"
+#include "sinew/scene/tissues.h"
 
 namespace sinew {
 
@@ -121,12 +122,33 @@ void refuse_shared_labels(const SceneBody& body) {
     }
 }
 
+// The key material: what the table states as well overrides it.
+void parse_tissue(const Reader& reader, Material& m) {
+  std::string name;
+  if (!reader.text("material", name)) return;
+  const Tissue* tissue = find_tissue(name);
+  if (tissue == nullptr)
+    reader.fail("material",
+                fmt::format("{}: {}", reader.called("material"), unknown_tissue_message(name)),
+                fmt::format("'sinew materials' shows them all: {}", tissue_names()));
+  apply(*tissue, m);
+}
+
 }  // namespace
 
 Material parse_material(const Reader& reader, const Material& base) {
   Material m = base;
+  parse_tissue(reader, m);
   if (const auto law = reader.word("law"))
-    m.law = *law == "uniform" ? Law::uniform : *law == "lloyd" ? Law::lloyd : Law::vangelder;
+    m.law = *law == "uniform"      ? Law::uniform
+            : *law == "lloyd"      ? Law::lloyd
+            : *law == "vangelder"  ? Law::vangelder
+            : *law == "calibrated" ? Law::calibrated
+                                   : Law::neo_hookean;
+  reader.number("beta", m.beta);
+  if (const auto volume = reader.word("volume"))
+    m.volume = *volume == "none" ? Volume::none : *volume == "tet" ? Volume::tet : Volume::node;
+  reader.number("volume_stiffness", m.volume_stiffness);
   reader.number("density", m.density);
   reader.number("young", m.young);
   reader.number("poisson", m.poisson);
