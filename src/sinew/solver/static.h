@@ -1,0 +1,69 @@
+// The rest state: where all forces on the free nodes vanish. docs/methods/static.md.
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/state.h"
+#include "sinew/solver/scalar_preconditioner.h"
+
+namespace sinew {
+
+struct StaticProgress {
+  int load_step = 0;      // 1, 2, ...
+  double load = 0.0;      // share of the way to the new loads and pins that is done [-]
+  int newton = 0;         // Newton steps so far, in all
+  double residual = 0.0;  // see StaticReport
+};
+
+struct StaticOptions {
+  double tolerance = 1e-6;  // residual to reach [-]
+  int max_newton = 100;     // Newton steps within a load step before it is cut in half
+  int min_load_steps = 1;   // pins that turn far get more of themselves (20 degrees each)
+  const std::atomic<bool>* stop = nullptr;  // ends after the Newton step under way
+  std::function<void(const StaticProgress&)> on_progress;
+};
+
+struct StaticReport {
+  // |f| over the free nodes divided by the norm of what they carry: the larger of the outer forces
+  // on the free nodes and the material's forces on the pinned ones (reactions).
+  double residual = 0.0;
+  double force = 0.0;  // |f| itself [N]
+  int load_steps = 0;
+  int newton = 0;
+  int products = 0;      // Hessian products taken by the conjugate gradients
+  bool stopped = false;  // by options.stop; the state is then the best so far
+};
+
+class StaticSolver {
+ public:
+  explicit StaticSolver(const Model& model);
+
+  // Moves the state to rest under the pins and loads of the time `time` [s], starting from where it
+  // is: Newton's method with conjugate gradients and a line search on the energy. Velocities become
+  // zero, state.time = time. Dashpots and drag play no part.
+  //
+  // Where Newton's method does not get through, pins and loads are brought on in smaller steps.
+  // Throws Error(input) where a body has nothing to hold it against the forces on it, and
+  // Error(diverged) where no rest state is found.
+  StaticReport solve(double time, const StaticOptions& options, State& state);
+
+  // Solves K u = rhs for the free nodes with the tangent at positions x by conjugate gradients, to
+  // |K u - rhs| <= tolerance |rhs|; u of the others is kept as given and acts as a prescribed
+  // displacement. Returns the products taken.
+  int solve_tangent(const std::vector<Vec3>& x, const std::vector<Vec3>& rhs, double tolerance,
+                    std::vector<Vec3>& u);
+
+  Workspace& workspace() { return workspace_; }
+
+ private:
+  struct Loads;
+  const Model& model_;
+  Workspace workspace_;
+  ScalarPreconditioner preconditioner_;
+};
+
+}  // namespace sinew
