@@ -46,3 +46,17 @@ function(sinew_room name level)
   endif()
   set_property(GLOBAL APPEND PROPERTY SINEW_ROOMS ${name}:${level})
 endfunction()
+
+# sinew_embed(ROOM FILE SYMBOL): the text of FILE as `extern const char sinew::SYMBOL[]` in the
+# library of ROOM, so that the binary needs no data file.
+function(sinew_embed room file symbol)
+  set(path ${CMAKE_SOURCE_DIR}/${file})
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
+  file(READ ${path} text)
+  set(source ${CMAKE_BINARY_DIR}/embedded/${symbol}.cpp)
+  string(CONCAT code "// Generated from ${file}.\nnamespace sinew {\n"
+    "extern const char ${symbol}[];\n"
+    "const char ${symbol}[] = R\"embedded(${text})embedded\";\n}  // namespace sinew\n")
+  file(CONFIGURE OUTPUT ${source} CONTENT "@code@" @ONLY)
+  target_sources(sinew_${room} PRIVATE ${source})
+endfunction()

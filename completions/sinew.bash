@@ -20,7 +20,7 @@ _sinew() {
   local meshes=(mesh msh vtk vtu node ele)
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    _sinew_words "run resume info convert completion --help --version"
+    _sinew_words "run resume info convert materials completion --help --version"
     return
   fi
   case ${COMP_WORDS[1]}:$previous in
@@ -43,6 +43,8 @@ _sinew() {
     run:*) _sinew_files toml ;;
     resume:*) _sinew_files ;;
     info:* | convert:*) _sinew_files "${meshes[@]}" ;;
+    materials:-*) _sinew_words "--json --help" ;;
+    materials:*) _sinew_words "artery brain breast fat heart kidney ligament liver muscle silicone-gel skin tendon" ;;
     completion:*) _sinew_words "bash zsh fish --help" ;;
   esac
 }

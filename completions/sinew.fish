@@ -9,6 +9,7 @@ complete -c sinew -n __fish_use_subcommand -a run -d 'Run a scene into a folder'
 complete -c sinew -n __fish_use_subcommand -a resume -d 'Go on with a run from its checkpoint'
 complete -c sinew -n __fish_use_subcommand -a info -d 'Examine a mesh'
 complete -c sinew -n __fish_use_subcommand -a convert -d 'Convert between mesh formats'
+complete -c sinew -n __fish_use_subcommand -a materials -d 'Show the tissue library'
 complete -c sinew -n __fish_use_subcommand -a completion -d 'Print a shell completion'
 
 set -l run '__fish_seen_subcommand_from run'
@@ -34,7 +35,9 @@ complete -c sinew -n $convert -l repair -d 'Turn inverted tets, drop unreference
 complete -c sinew -n $convert -l format -x -d 'Variant of the format' \
     -a 'gmsh41 gmsh41-binary gmsh22 gmsh22-binary ascii binary zlib base64'
 complete -c sinew -n $convert -l force -d 'Replace existing files'
-complete -c sinew -n '__fish_seen_subcommand_from info' -l json -d 'Print JSON'
+complete -c sinew -n '__fish_seen_subcommand_from info materials' -l json -d 'Print JSON'
+complete -c sinew -n '__fish_seen_subcommand_from materials' \
+    -a 'artery brain breast fat heart kidney ligament liver muscle silicone-gel skin tendon'
 complete -c sinew -n '__fish_seen_subcommand_from completion' -a 'bash zsh fish'
-set -l any '__fish_seen_subcommand_from run resume info convert completion'
+set -l any '__fish_seen_subcommand_from run resume info convert materials completion'
 complete -c sinew -n $any -l help -d 'Show help'

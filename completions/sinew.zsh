@@ -13,6 +13,7 @@ _sinew() {
         'resume:Go on with a run from its last checkpoint'
         'info:Examine a mesh'
         'convert:Convert between mesh formats'
+        'materials:Show the tissue library'
         'completion:Print a shell completion'
       )
       _describe command commands
@@ -47,6 +48,10 @@ _sinew() {
             '--format[Variant of the format]:variant:(gmsh41 gmsh41-binary gmsh22 gmsh22-binary ascii binary zlib base64)' \
             '--force[Replace existing files]' '--help[Show help]' \
             '1:mesh:_files -g "$meshes"' '2:mesh:_files -g "$meshes"'
+          ;;
+        materials)
+          _arguments '--json[Print JSON]' '--help[Show help]' \
+            '1:material:(artery brain breast fat heart kidney ligament liver muscle silicone-gel skin tendon)'
           ;;
         completion) _arguments '--help[Show help]' '1:shell:(bash zsh fish)' ;;
       esac

@@ -8,4 +8,5 @@ void add_run(CLI::App& app, int& status);
 void add_resume(CLI::App& app, int& status);
 void add_info(CLI::App& app);
 void add_convert(CLI::App& app);
+void add_materials(CLI::App& app);
 void add_completion(CLI::App& app);

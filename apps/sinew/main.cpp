@@ -17,7 +17,8 @@ Examples:
   sinew run scenes/beam.toml --set beam.cells=[8,8,32] --set beam.young=1.5e6
   sinew resume out/liver
   sinew info scenes/meshes/liver-10mm.mesh
-  sinew convert liver.mesh liver.vtu)";
+  sinew convert liver.mesh liver.vtu
+  sinew materials liver)";
 
 }  // namespace
 
@@ -32,6 +33,7 @@ int main(int argc, char** argv) {
   add_resume(app, status);
   add_info(app);
   add_convert(app);
+  add_materials(app);
   add_completion(app);
   try {
     app.parse(argc, argv);
