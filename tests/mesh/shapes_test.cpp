@@ -10,6 +10,7 @@
 #include "sinew/mesh/doctor.h"
 #include "sinew/mesh/edges.h"
 #include "sinew/mesh/quality.h"
+#include "sinew/mesh/surface.h"
 
 namespace sinew {
 namespace {
@@ -150,6 +151,52 @@ TEST(Cylinder, ShorterThanARingIsOneLayer) {
   EXPECT_EQ(mesh.tet_count(), 18 * 9);
 }
 
+TEST(HollowSphere, CountsAndQuality) {
+  const std::pair<double, Index> cases[] = {{0.5, 4}, {0.5, 5}, {0.7, 2}, {0.9, 1}, {0.9, 3}};
+  for (const auto& [inner, n] : cases) {
+    const TetMesh mesh = hollow_sphere(1, inner, n);
+    expect_sound(mesh);
+    const auto m = static_cast<Index>(std::round(-0.95 * n / std::log(inner)));
+    EXPECT_EQ(mesh.tet_count(), 60 * m * m * n);
+    EXPECT_EQ(mesh.node_count(), (10 * m * m + 2) * (n + 1));
+    const Quality quality = quality_of(mesh);
+    EXPECT_GE(quality.dihedral_angle.min, 33) << inner << ' ' << n;
+    EXPECT_LE(quality.dihedral_angle.max, 122) << inner << ' ' << n;
+    double least = 2, most = 0;
+    for (const Vec3& x : mesh.nodes) {
+      least = std::min(least, x.norm());
+      most = std::max(most, x.norm());
+    }
+    EXPECT_NEAR(least, inner, 1e-15);
+    EXPECT_NEAR(most, 1, 1e-15);
+  }
+}
+
+TEST(HollowSphere, IsClosedInsideAndOutside) {
+  const TetMesh mesh = hollow_sphere(1, 0.5, 3);
+  const Surface surface = build_surface(mesh.tets, mesh.node_count());
+  EXPECT_EQ(connected_components(surface.triangles, mesh.node_count()).count, 2);
+  EXPECT_EQ(surface.triangles.size(), 2U * 20 * 4 * 4);
+  ASSERT_EQ(mesh.faces.size(), surface.triangles.size());
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f)
+    for (const Index corner : mesh.faces[f])
+      EXPECT_NEAR(mesh.nodes[uz(corner)].norm(), mesh.face_label[f] == 1 ? 1.0 : 0.5, 1e-15);
+}
+
+TEST(HollowSphere, VolumeConvergesWithTheSquareOfTheResolution) {
+  const double exact = 4.0 / 3.0 * std::numbers::pi * (1 - 0.125);
+  const double error_4 = 1 - quality_of(hollow_sphere(1, 0.5, 4)).volume / exact;
+  const double error_8 = 1 - quality_of(hollow_sphere(1, 0.5, 8)).volume / exact;
+  EXPECT_LT(error_4, 0.04);
+  EXPECT_NEAR(std::log2(error_4 / error_8), 2, 0.4);
+}
+
+TEST(HollowSphere, AnyWallIsSound) {
+  expect_sound(hollow_sphere(1, 0.01, 1));
+  expect_sound(hollow_sphere(1, 0.01, 7));
+  expect_sound(hollow_sphere(1, 0.99, 1));
+}
+
 TEST(Shapes, WrongArguments) {
   EXPECT_EQ(message_of([] {
               beam({0.1, 0, 0.4}, {1, 1, 1});
@@ -174,6 +221,10 @@ TEST(Shapes, WrongArguments) {
             }),
             "ellipsoid: radii[2] is 1e+300, expected a length from 1e-6 to 1e6 m");
   EXPECT_EQ(message_of([] { cylinder(1, 1, 0); }), "cylinder: resolution is 0, expected 1 or more");
+  EXPECT_EQ(message_of([] { hollow_sphere(1, 1, 4); }),
+            "hollow_sphere: inner_radius is 1, expected less than the radius 1");
+  EXPECT_EQ(message_of([] { hollow_sphere(1, 0.5, 0); }),
+            "hollow_sphere: resolution is 0, expected 1 or more");
 }
 
 TEST(Shapes, AbsurdSizesAreRefusedAtOnce) {
@@ -190,6 +241,9 @@ TEST(Shapes, AbsurdSizesAreRefusedAtOnce) {
             "sphere: resolution asks for 20.6 million tets, expected 20 million or fewer");
   EXPECT_EQ(message_of([] { cylinder(1e-6, 1e6, kLargest); }),
             "cylinder: resolution asks for 1.78e+35 million tets, expected 20 million or fewer");
+  EXPECT_EQ(
+      message_of([] { hollow_sphere(1, 0.999999, 1); }),
+      "hollow_sphere: resolution asks for 5.42e+07 million tets, expected 20 million or fewer");
 }
 
 }  // namespace

@@ -137,7 +137,7 @@ const std::vector<Bad>& bad_scenes() {
        "  remedy: the default is law = \"lloyd\""},
       {"[body.b]\nshape = \"cube\"\n",
        "scene.toml:2:9: 'shape' in [body.b] is \"cube\"; expected one of \"beam\", \"box\", "
-       "\"sphere\", \"ellipsoid\", \"cylinder\"\n"
+       "\"sphere\", \"ellipsoid\", \"cylinder\", \"hollow_sphere\"\n"
        "  remedy: docs/scene-format.md says what 'shape' takes"},
       {"stepper = \"euler\"\n" BEAM,
        "scene.toml:1:11: 'stepper' in the scene is \"euler\"; expected one of \"verlet\"\n"
@@ -154,7 +154,7 @@ const std::vector<Bad>& bad_scenes() {
        "  remedy: remove one of them"},
       {BEAM "radius = 0.1\n",
        "scene.toml:3:10: 'radius' in [body.beam] does not go with shape = \"beam\"\n"
-       "  remedy: remove it; it belongs to: sphere, cylinder"},
+       "  remedy: remove it; it belongs to: sphere, cylinder, hollow_sphere"},
       {"[body.b]\nmesh = \"a.mesh\"\ncells = [1, 1, 1]\n",
        "scene.toml:3:9: 'cells' in [body.b] does not go with a mesh file\n"
        "  remedy: remove it; it belongs to: beam, box"},
@@ -211,8 +211,18 @@ const std::vector<Bad>& bad_scenes() {
        "scene.toml:6:10: 'smooth' in [attachment.a] goes with a point, and there is none\n"
        "  remedy: remove it; another body moves by itself"},
       {BEAM "[force.f]\nselect = { all = true }\n",
-       "scene.toml:3:1: [force.f] has no 'force'\n"
-       "  remedy: add force = [0, 0, 1], in newtons"},
+       "scene.toml:3:1: [force.f] has none of 'force', 'traction' and 'pressure'\n"
+       "  remedy: a force in newtons is force = [0, 0, 1]; a table has one of the three"},
+      {BEAM "[force.f]\nselect = { all = true }\nforce = [0, 0, 1]\npressure = 1\n",
+       "scene.toml:3:1: [force.f] has more than one of 'force', 'traction' and 'pressure'\n"
+       "  remedy: a force in newtons is force = [0, 0, 1]; a table has one of the three"},
+      {BEAM "[pin.end]\nselect = { all = true }\npath = [{ time = 1, deform = [1, 0, 0] }]\n",
+       "scene.toml:5:30: 'deform' in key frame 0 of [pin.end] is an array of 3; expected 9 "
+       "numbers\n"
+       "  remedy: the default is deform = [1, 0, 0, 0, 1, 0, 0, 0, 1]"},
+      {BEAM "jitter = 0.5\n",
+       "scene.toml:3:10: 'jitter' in [body.beam] is 0.5; expected from 0 to 0.45\n"
+       "  remedy: the default is jitter = 0"},
       {BEAM "[force.f]\nselect = { all = true }\nforce = [0, 0, 1]\nstart = 2\nend = 1\n",
        "scene.toml:7:7: 'end' in [force.f] is 1, not after its start at 2\n"
        "  remedy: a force acts from start to end, in seconds"},

@@ -151,6 +151,82 @@ TEST(Build, EveryShape) {
               3e-4);
   EXPECT_NEAR(volume("shape = \"cylinder\"\nradius = 0.1\nheight = 0.3\nresolution = 8\n"),
               3e-3 * pi, 3e-5);
+  EXPECT_NEAR(volume("shape = \"hollow_sphere\"\nradius = 0.1\ninner_radius = 0.05\n"
+                     "resolution = 8\n"),
+              4e-3 / 3 * pi * 0.875, 4e-5);
+}
+
+TEST(Build, JitterMovesNodes) {
+  const std::string beam = "[body.b]\nshape = \"beam\"\n";
+  const Model plain = build(beam);
+  const Model jittered = build(beam + "jitter = 0.2\n");
+  EXPECT_NEAR(jittered.bodies[0].rest_volume, plain.bodies[0].rest_volume, 1e-15);
+  EXPECT_NE(jittered.rest_position, plain.rest_position);
+}
+
+TEST(Build, TractionActsOnTheSurfaceBetweenTheNodes) {
+  const std::string beam = "[body.b]\nshape = \"beam\"\n";
+  const Model m = build(beam + R"(
+[force.pull]
+select = { side = "+z" }
+traction = [0, 0, 500]
+start = 1
+ramp = 2
+)");
+  ASSERT_EQ(m.loads.size(), 1U);
+  const Load& load = m.loads[0];
+  EXPECT_EQ(load.faces.size(), 2U * 4 * 4);
+  EXPECT_NEAR(sum(load.rest_area), 0.01, 1e-15);
+  EXPECT_EQ(load.traction, Vec3(0, 0, 500));
+  EXPECT_EQ(load.pressure, 0.0);
+  EXPECT_EQ(load.start, 1.0);
+  EXPECT_EQ(load.ramp, 2.0);
+  EXPECT_NE(build(beam + "[force.pull]\nselect = { side = \"+z\" }\npressure = 1\n").hash(),
+            build(beam + "[force.pull]\nselect = { side = \"+z\" }\npressure = 2\n").hash());
+}
+
+TEST(Build, PressureInsideAHollowSphereOfASecondBody) {
+  const Model m = build(R"(
+[body.other]
+shape = "box"
+[body.b]
+shape = "hollow_sphere"
+radius = 0.1
+inner_radius = 0.05
+resolution = 4
+[force.blow]
+body = "b"
+select = { face_label = 2 }
+pressure = 1e3
+)");
+  const Load& load = m.loads[0];
+  EXPECT_EQ(load.faces.size(), 20U * 5 * 5);
+  EXPECT_NEAR(sum(load.rest_area), 4 * std::numbers::pi * 0.0025, 1e-3);
+  for (const Triangle& t : load.faces)
+    for (const Index corner : t)
+      EXPECT_NEAR(m.rest_position[static_cast<std::size_t>(corner)].norm(), 0.05, 1e-15);
+}
+
+TEST(Build, ALoadByAreaNeedsATriangle) {
+  EXPECT_EQ(build_error("[body.b]\nshape = \"beam\"\n[force.f]\n"
+                        "select = { nodes = [0, 3] }\npressure = 1\n"),
+            "scene.toml:4:10: 'select' of [force.f] has 2 nodes, but all three of no triangle of "
+            "the surface\n"
+            "  remedy: tractions and pressures act on whole triangles: select more nodes, or give "
+            "a force");
+}
+
+TEST(Build, KeyFramesDeform) {
+  const Model m = build(R"(
+[body.b]
+shape = "box"
+[pin.skin]
+select = { surface = true }
+pivot = [0, 0, 0]
+path = [{ time = 1, deform = [1, 2, 3, 4, 5, 6, 7, 8, 9] }]
+)");
+  EXPECT_EQ(m.pins[0].path.at(1.0, Vec3(1, 0, 0)), Vec3(1, 4, 7));
+  EXPECT_EQ(m.pins[0].path.at(1.0, Vec3(0, 1, 0)), Vec3(2, 5, 8));
 }
 
 TEST(Build, MapsLabelsToRegions) {

@@ -241,6 +241,53 @@ void require_resolution(const char* shape, Index n, double tets_per_cubed) {
   require_tets(shape, "resolution", tets_per_cubed * n * n * n);
 }
 
+// The icosahedron's triangles, each divided into m^2, their nodes moved out to the unit sphere.
+struct UnitSphere {
+  std::vector<Vec3> nodes;
+  std::vector<Triangle> triangles;
+};
+
+UnitSphere unit_sphere(Index m) {
+  const Icosahedron ico;
+  const Index first = Icosahedron::shell_start(m);
+  UnitSphere sphere;
+  sphere.nodes.assign(uz(Icosahedron::shell_start(m + 1) - first), Vec3::Zero());
+  sphere.triangles.reserve(20 * uz(m) * uz(m));
+  for (std::size_t f = 0; f < ico.faces.size(); ++f) {
+    const auto node = [&](Index i, Index j) { return ico.node(f, {i, j, m - i - j}) - first; };
+    for (Index i = 0; i <= m; ++i) {
+      for (Index j = 0; i + j <= m; ++j) {
+        Vec3 direction = Vec3::Zero();
+        const std::array<Index, 3> weights = {i, j, m - i - j};
+        for (std::size_t c = 0; c < 3; ++c)
+          direction += weights[c] * ico.vertices[uz(ico.faces[f][c])];
+        sphere.nodes[uz(node(i, j))] = direction.normalized();
+        if (i + j < m) sphere.triangles.push_back({node(i, j), node(i + 1, j), node(i, j + 1)});
+        if (i + j + 2 <= m)
+          sphere.triangles.push_back({node(i + 1, j), node(i, j + 1), node(i + 1, j + 1)});
+      }
+    }
+  }
+  return sphere;
+}
+
+// Three tets to every prism between layers of the same triangles, whose nodes mesh.nodes holds
+// layer by layer. A prism's sides are cut from the lower node in one layer to the higher node in
+// the other, so neighbours agree; layers alternate, so that the whole has no twist.
+void fill_layers(TetMesh& mesh, std::vector<Triangle> triangles, Index layer_nodes, Index layers) {
+  for (Triangle& t : triangles) std::sort(t.begin(), t.end());
+  mesh.tets.reserve(3 * triangles.size() * uz(layers));
+  for (Index l = 0; l < layers; ++l) {
+    Index from = l * layer_nodes, to = from + layer_nodes;
+    if (l % 2 == 1) std::swap(from, to);
+    for (const auto& [a, b, c] : triangles) {
+      add_positive_tet(mesh, {from + a, from + b, from + c, to + c});
+      add_positive_tet(mesh, {from + a, from + b, to + b, to + c});
+      add_positive_tet(mesh, {from + a, to + a, to + b, to + c});
+    }
+  }
+}
+
 // Triangles of a disc of n rings: node 0 is the centre, ring r has 6 r nodes.
 std::vector<Triangle> disc_triangles(Index n) {
   const auto node = [](Index ring, Index k) {
@@ -301,19 +348,37 @@ TetMesh cylinder(double radius, double length, Index resolution) {
     }
   }
 
-  std::vector<Triangle> triangles = disc_triangles(resolution);
-  for (Triangle& t : triangles) std::sort(t.begin(), t.end());
-  mesh.tets.reserve(3 * triangles.size() * uz(layers));
-  for (Index l = 0; l < layers; ++l) {
-    // A prism's sides are cut from the lower node in one layer to the higher node in the other, so
-    // neighbours agree; layers alternate, so that the whole has no twist.
-    Index from = l * disc_nodes, to = from + disc_nodes;
-    if (l % 2 == 1) std::swap(from, to);
-    for (const auto& [a, b, c] : triangles) {
-      add_positive_tet(mesh, {from + a, from + b, from + c, to + c});
-      add_positive_tet(mesh, {from + a, from + b, to + b, to + c});
-      add_positive_tet(mesh, {from + a, to + a, to + b, to + c});
-    }
+  fill_layers(mesh, disc_triangles(resolution), disc_nodes, layers);
+  return mesh;
+}
+
+TetMesh hollow_sphere(double radius, double inner_radius, Index resolution) {
+  require_length("hollow_sphere", "radius", radius);
+  require_length("hollow_sphere", "inner_radius", inner_radius);
+  if (inner_radius >= radius)
+    throw Error(ErrorKind::input,
+                fmt::format("hollow_sphere: inner_radius is {}, expected less than the radius {}",
+                            inner_radius, radius),
+                "the wall lies between the two");
+  const double wall = std::log(radius / inner_radius);
+  const double cuts = std::max(1.0, std::round(0.95 * resolution / wall));
+  require_resolution("hollow_sphere", resolution, 60 * cuts * cuts / resolution / resolution);
+
+  const UnitSphere sphere = unit_sphere(static_cast<Index>(cuts));
+  TetMesh mesh;
+  mesh.nodes.reserve(sphere.nodes.size() * (uz(resolution) + 1));
+  for (Index shell = 0; shell <= resolution; ++shell) {
+    const double r =
+        shell == resolution ? radius : inner_radius * std::exp(wall * shell / resolution);
+    for (const Vec3& direction : sphere.nodes) mesh.nodes.push_back(r * direction);
+  }
+  const auto layer_nodes = static_cast<Index>(sphere.nodes.size());
+  fill_layers(mesh, sphere.triangles, layer_nodes, resolution);
+  for (const int label : {1, 2}) {
+    const Index first = label == 1 ? resolution * layer_nodes : 0;
+    for (const Triangle& t : sphere.triangles)
+      mesh.faces.push_back({first + t[0], first + t[1], first + t[2]});
+    mesh.face_label.resize(mesh.faces.size(), label);
   }
   return mesh;
 }

@@ -61,6 +61,7 @@ std::uint64_t Model::hash() const {
       h.value(k.time);
       hash_vec(h, k.move);
       hash_vec(h, k.turn);
+      for (const double f : k.deform.reshaped()) h.value(f);
     }
   }
   for (const Load& load : loads) {

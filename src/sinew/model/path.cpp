@@ -19,13 +19,15 @@ Vec3 Path::at(double t, const Vec3& X) const {
     if (smooth) s = s * s * (3.0 - 2.0 * s);
     now.move = (1.0 - s) * from.move + s * after->move;
     now.turn = (1.0 - s) * from.turn + s * after->turn;
+    now.deform = from.deform + s * (after->deform - from.deform);  // exact where both are equal
   }
   const double angle = now.turn.norm();
-  Vec3 turned = X;
-  if (angle > 0.0) {
-    turned = pivot + Eigen::AngleAxisd(angle, Vec3(now.turn / angle)) * Vec3(X - pivot);
-  }
-  return turned + now.move;
+  const bool deforms = now.deform != Mat3::Identity();
+  if (angle == 0.0 && !deforms) return X + now.move;
+  Vec3 arm = X - pivot;
+  if (deforms) arm = now.deform * arm;
+  if (angle > 0.0) arm = Eigen::AngleAxisd(angle, Vec3(now.turn / angle)) * arm;
+  return pivot + arm + now.move;
 }
 
 }  // namespace sinew

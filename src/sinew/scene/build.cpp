@@ -9,7 +9,9 @@
 #include <set>
 
 #include "sinew/forces/assemble.h"
+#include "sinew/forces/loads.h"
 #include "sinew/mesh/shapes.h"
+#include "sinew/mesh/surface.h"
 #include "sinew/scene/place.h"
 #include "sinew/scene/select.h"
 
@@ -120,10 +122,7 @@ class Parts {
 
   void add() {
     for (const ScenePin& pin : scene_.pins) add_pin(pin);
-    for (const SceneForce& f : scene_.forces)
-      model_.loads.push_back({f.name,
-                              select(f.body, f.select, "'select' of [force." + f.name + "]"),
-                              f.force, f.start, f.end, f.ramp});
+    for (const SceneForce& f : scene_.forces) add_load(f);
     for (const SceneProbe& p : scene_.probes)
       model_.probes.push_back(
           {p.name, select(p.body, p.select, "'select' of [probe." + p.name + "]")});
@@ -136,13 +135,17 @@ class Parts {
   }
 
  private:
+  const PlacedBody& body_named(const std::string& name) const {
+    return *std::find_if(bodies_.begin(), bodies_.end(),
+                         [&](const PlacedBody& b) { return b.body->name == name; });
+  }
+
   // Node ids of the Model.
   std::vector<Index> select(const std::string& body, const Selection& selection,
                             const std::string& what) const {
-    const auto placed = std::find_if(bodies_.begin(), bodies_.end(),
-                                     [&](const PlacedBody& b) { return b.body->name == body; });
-    std::vector<Index> nodes = select_nodes(*placed, selection, what);
-    for (Index& node : nodes) node += placed->first_node;
+    const PlacedBody& placed = body_named(body);
+    std::vector<Index> nodes = select_nodes(placed, selection, what);
+    for (Index& node : nodes) node += placed.first_node;
     return nodes;
   }
 
@@ -160,6 +163,43 @@ class Parts {
       holder = &pin;
     }
     model_.pins.push_back(std::move(out));
+  }
+
+  void add_load(const SceneForce& f) {
+    const std::string what = "'select' of [force." + f.name + "]";
+    Load load;
+    load.name = f.name;
+    load.nodes = select(f.body, f.select, what);
+    load.force = f.force.value_or(Vec3::Zero());
+    load.start = f.start;
+    load.end = f.end;
+    load.ramp = f.ramp;
+    if (!f.force) {
+      load.traction = f.traction.value_or(Vec3::Zero());
+      load.pressure = f.pressure.value_or(0.0);
+      add_faces(load, body_named(f.body), what, f.select.where);
+    }
+    model_.loads.push_back(std::move(load));
+  }
+
+  // The triangles of the body's surface all of whose nodes are in the load.
+  void add_faces(Load& load, const PlacedBody& placed, const std::string& what,
+                 const Location& where) const {
+    std::vector<bool> chosen(placed.mesh.nodes.size(), false);
+    for (const Index node : load.nodes) chosen[uz(node - placed.first_node)] = true;
+    for (const Triangle& t : build_surface(placed.mesh.tets, placed.mesh.node_count()).triangles) {
+      if (!chosen[uz(t[0])] || !chosen[uz(t[1])] || !chosen[uz(t[2])]) continue;
+      load.faces.push_back(
+          {t[0] + placed.first_node, t[1] + placed.first_node, t[2] + placed.first_node});
+      load.rest_area.push_back(area_vector(model_.rest_position, load.faces.back()).norm());
+    }
+    if (load.faces.empty())
+      throw Error(ErrorKind::input,
+                  fmt::format("{} has {} nodes, but all three of no triangle of the surface", what,
+                              load.nodes.size()),
+                  "tractions and pressures act on whole triangles: select more nodes, or give a "
+                  "force",
+                  where);
   }
 
   void attach_to_point(const SceneAttachment& a) {

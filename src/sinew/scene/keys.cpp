@@ -80,11 +80,12 @@ KeyTables make_tables() {
             "[body.NAME]",
             {
                 text("mesh"),
-                word("shape", "", "beam box sphere ellipsoid cylinder"),
+                word("shape", "", "beam box sphere ellipsoid cylinder hollow_sphere"),
                 other("cells", T::cells, "", "[4, 4, 16]", from_to(1, 20'000'000)),
                 point("size", "m", "[0.1, 0.1, 0.4]", positive),
                 number("jitter", "", "0", from_to(0, 0.45)),
                 number("radius", "m", "0.05", positive),
+                number("inner_radius", "m", "0.025", positive),
                 point("radii", "m", "[0.1, 0.1, 0.1]", positive),
                 number("height", "m", "0.2", positive),
                 integer("resolution", "4", from_to(1, 100)),
@@ -136,6 +137,7 @@ KeyTables make_tables() {
                      number("time", "s", "", not_negative),
                      point("move", "m", "[0, 0, 0]"),
                      point("turn", "degrees", "[0, 0, 0]"),
+                     other("deform", T::matrix, "", "[1, 0, 0, 0, 1, 0, 0, 0, 1]"),
                  }};
   t.select = {"select",
               "a selection",
@@ -175,6 +177,8 @@ KeyTables make_tables() {
                  text("body", "the only one"),
                  other("select", T::table),
                  point("force", "N"),
+                 point("traction", "Pa"),
+                 number("pressure", "Pa", ""),
                  number("start", "s", "0", not_negative),
                  number("end", "s", "inf", not_negative_or_none),
                  number("ramp", "s", "0", not_negative),
@@ -256,6 +260,8 @@ std::string type_text(const Key& key) {
       return "3 numbers";
     case KeyType::rotation:
       return "3 or 4 numbers";
+    case KeyType::matrix:
+      return "9 numbers";
     case KeyType::cells:
       return "3 integers";
     case KeyType::integers:

@@ -18,6 +18,7 @@ enum class KeyType {
   number_or_word,  // a number, or one of Key::words
   point,           // three numbers
   rotation,        // three or four numbers
+  matrix,          // nine numbers, row by row
   cells,           // three integers
   integers,        // an array of integers
   table,           // [table] or { braces }

@@ -19,14 +19,15 @@ struct ShapeKey {
   std::string_view key;
   std::string_view shapes;
 };
-constexpr std::array<ShapeKey, 7> shape_keys = {{
+constexpr std::array<ShapeKey, 8> shape_keys = {{
     {"cells", "beam box"},
     {"size", "beam box"},
     {"jitter", "beam box"},
-    {"radius", "sphere cylinder"},
+    {"radius", "sphere cylinder hollow_sphere"},
+    {"inner_radius", "hollow_sphere"},
     {"radii", "ellipsoid"},
     {"height", "cylinder"},
-    {"resolution", "sphere ellipsoid cylinder"},
+    {"resolution", "sphere ellipsoid cylinder hollow_sphere"},
 }};
 
 // A key that would have no effect is a mistake.
@@ -62,6 +63,7 @@ void parse_source(const Reader& reader, SceneBody& body) {
   reader.point("size", body.size);
   reader.number("jitter", body.jitter);
   reader.number("radius", body.radius);
+  reader.number("inner_radius", body.inner_radius);
   reader.point("radii", body.radii);
   reader.number("height", body.height);
   reader.integer("resolution", body.resolution);

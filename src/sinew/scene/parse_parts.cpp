@@ -79,9 +79,16 @@ SceneForce parse_force(const std::string& name, const DocValue& value, const Bod
   force.where = reader.where();
   force.body = parse_body_name(reader, "body", bodies);
   force.select = parse_selection(reader, "select");
-  if (!reader.point("force", force.force))
-    throw Error(ErrorKind::input, fmt::format("{} has no 'force'", reader.name()),
-                "add force = [0, 0, 1], in newtons", reader.where());
+  reader.point("force", force.force);
+  reader.point("traction", force.traction);
+  reader.number("pressure", force.pressure);
+  if (force.force.has_value() + force.traction.has_value() + force.pressure.has_value() != 1)
+    throw Error(ErrorKind::input,
+                fmt::format("{} has {} 'force', 'traction' and 'pressure'", reader.name(),
+                            force.force || force.traction || force.pressure ? "more than one of"
+                                                                            : "none of"),
+                "a force in newtons is force = [0, 0, 1]; a table has one of the three",
+                reader.where());
   reader.number("start", force.start);
   reader.number("end", force.end);
   reader.number("ramp", force.ramp);

@@ -60,6 +60,7 @@ KeyFrame parse_key_frame(const DocValue& value, const std::string& name) {
   reader.number("time", key.time);
   reader.point("move", key.move);
   if (reader.point("turn", key.turn)) key.turn *= radians;
+  reader.matrix("deform", key.deform);
   return key;
 }
 

@@ -57,6 +57,8 @@ TetMesh make_shape(const SceneBody& body) {
     if (body.shape == "sphere") return sphere(body.radius, body.resolution);
     if (body.shape == "ellipsoid") return ellipsoid(body.radii, body.resolution);
     if (body.shape == "cylinder") return cylinder(body.radius, body.height, body.resolution);
+    if (body.shape == "hollow_sphere")
+      return hollow_sphere(body.radius, body.inner_radius, body.resolution);
   } catch (const Error& error) {
     throw Error(error.kind(), error.message(), error.remedy(), body.mesh_where);
   }

@@ -175,8 +175,10 @@ std::vector<double> Reader::numbers(std::string_view key) const {
   if (value == nullptr) return {};
   const Key& k = key_of(key);
   const std::size_t size = value->items.size();
-  if (value->type != Type::array || !(size == 3 || (size == 4 && k.type == KeyType::rotation)))
-    wrong_type(k, *value);
+  const bool fits = k.type == KeyType::matrix
+                        ? size == 9
+                        : size == 3 || (size == 4 && k.type == KeyType::rotation);
+  if (value->type != Type::array || !fits) wrong_type(k, *value);
   std::vector<double> out;
   for (const DocValue& item : value->items) out.push_back(number_of(k, item));
   return out;
@@ -193,6 +195,13 @@ bool Reader::point(std::string_view key, std::optional<Vec3>& out) const {
   Vec3 value = Vec3::Zero();
   if (!point(key, value)) return false;
   out = value;
+  return true;
+}
+
+bool Reader::matrix(std::string_view key, Mat3& out) const {
+  const std::vector<double> values = numbers(key);
+  if (values.empty()) return false;
+  out = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(values.data());
   return true;
 }
 

@@ -37,12 +37,13 @@ class Reader {
   bool text(std::string_view key, std::string& out) const;
   bool point(std::string_view key, Vec3& out) const;
   bool point(std::string_view key, std::optional<Vec3>& out) const;
+  bool matrix(std::string_view key, Mat3& out) const;
   bool cells(std::string_view key, std::array<int, 3>& out) const;
   bool integers(std::string_view key, std::vector<int>& out) const;
 
   // The word of a KeyType::word or number_or_word; absent where the value is a number or missing.
   std::optional<std::string> word(std::string_view key) const;
-  // The numbers of a point or rotation, in the unit of the key table; empty where absent.
+  // The numbers of a point, rotation or matrix, in the unit of the key table; empty where absent.
   std::vector<double> numbers(std::string_view key) const;
   // A table within this one; null where absent.
   const DocValue* table(std::string_view key) const;

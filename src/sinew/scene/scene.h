@@ -60,14 +60,15 @@ struct SceneBody {
   std::string name;
   // Where the mesh comes from: a file or a shape.
   std::string mesh;                       // path, relative to the scene file; empty: a shape
-  std::string shape;                      // beam, box, sphere, ellipsoid, cylinder
+  std::string shape;                      // the word of the scene: beam, box ...
   std::array<int, 3> cells = {4, 4, 16};  // beam, box
   Vec3 size = Vec3(0.1, 0.1, 0.4);        // beam, box [m]
   double jitter = 0.0;                    // beam, box: share of a cell's edge
   Vec3 radii = Vec3(0.1, 0.1, 0.1);       // ellipsoid [m]
-  double radius = 0.05;                   // sphere, cylinder [m]
+  double radius = 0.05;                   // sphere, cylinder, hollow_sphere [m]
+  double inner_radius = 0.025;            // hollow_sphere [m]
   double height = 0.2;                    // cylinder, along z [m]
-  int resolution = 4;                     // sphere, ellipsoid, cylinder: shells
+  int resolution = 4;                     // round shapes: shells
   // Placement: x = position + R(rotation) (scale (X - origin))
   double scale = 1.0;   // metres per mesh unit
   bool center = false;  // origin: the mesh's centroid (by volume)
@@ -108,7 +109,9 @@ struct SceneAttachment {
 struct SceneForce {
   std::string name, body;
   Selection select;
-  Vec3 force = Vec3::Zero();                       // [N] in total, shared equally
+  std::optional<Vec3> force;                       // [N] in total, shared equally; or one of
+  std::optional<Vec3> traction;                    // [Pa] by rest area, and
+  std::optional<double> pressure;                  // [Pa] along the inward normal
   double start = 0.0, end = no_limit, ramp = 0.0;  // [s]
   Location where;
 };
