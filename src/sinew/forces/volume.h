@@ -1,10 +1,10 @@
 // Volume terms: what keeps the volume of tets and node cells, and the push of the network law.
 //
 //   W(x) = sum_t [ -mu_t (v_t - V_t) + V_t kappa_t/2 (v_t/V_t - 1)^2 + guard ]
-//        + sum_c V_c kappa_c/2 (J_c - 1)^2,   J_c = (sum of its tets' v_t / 4) / V_c
+//        + sum_c V_c kappa_c/2 (J_c - 1)^2,   J_c = (sum of its shares of v_t) / V_c
 //
 // so that the force on node i is -sum_{t at i} s_t dv_t/dx_i with the tet's pressure
-//   s_t = -mu_t + kappa_t (v_t/V_t - 1) + (mean over its corners of kappa_c (J_c - 1)) + guard.
+//   s_t = -mu_t + kappa_t (v_t/V_t - 1) + (its cells' kappa_c (J_c - 1), by their shares) + guard.
 // docs/methods/volume.md.
 #pragma once
 

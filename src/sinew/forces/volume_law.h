@@ -36,7 +36,7 @@ inline Corners volume_gradient_change(const Vec3& e1, const Vec3& e2, const Vec3
 // A tet can invert inside a node cell whose own volume is kept. The guard acts on that tet alone,
 // and on no tet that keeps more than the threshold's share of its volume, so that it costs no
 // accuracy where there is nothing to right.
-inline constexpr double guard_threshold = 0.1;
+inline constexpr double guard_threshold = 0.2;
 
 // Its part of the tet's pressure, dW/dv [Pa] <= 0. ratio = v / V [-], guard = g [Pa].
 inline double guard_pressure(double ratio, double guard) {

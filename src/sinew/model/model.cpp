@@ -35,6 +35,7 @@ std::uint64_t Model::hash() const {
   h.array(tet_shear);
   h.array(tet_bulk);
   h.array(cells);
+  h.array(cell_share);
   h.array(cell_bulk);
   h.array(limited);
   h.array(colour_start);

@@ -99,13 +99,15 @@ struct Model {
   std::vector<double> tet_modulus;          // shear modulus of the material [Pa] (tets), all laws
   std::vector<double> tet_bulk;             // kappa_t [Pa] (tets), 0: the tet's volume is free
   std::vector<std::array<Index, 4>> cells;  // cell of each corner (tets), -1: none
-  std::vector<double> cell_volume;          // V_c = sum of its tets' V / 4 [m3] (cells)
-  std::vector<double> cell_bulk;            // kappa_c [Pa] (cells)
-  std::vector<Index> cell_start;            // offsets into cell_tet (cells + 1)
-  std::vector<Index> cell_tet;              // tet ids, increasing in each cell
-  std::vector<Index> tet_start;             // offsets into node_tet (nodes + 1)
-  std::vector<Index> node_tet;              // 4 t + corner: the node is that corner of tet t
-  bool has_volume = false;                  // false: nothing above acts
+  std::vector<std::array<double, 4>> cell_share;  // share of the tet in that cell [-] (tets)
+  std::vector<double> cell_volume;                // V_c = sum of its tets' shares of V [m3] (cells)
+  std::vector<double> cell_bulk;                  // kappa_c [Pa] (cells)
+  std::vector<Index> cell_start;                  // offsets into cell_tet (cells + 1)
+  std::vector<Index> cell_tet;                    // tet ids, increasing in each cell
+  std::vector<double> cell_weight;                // the cell's share of that tet [-] (as cell_tet)
+  std::vector<Index> tet_start;                   // offsets into node_tet (nodes + 1)
+  std::vector<Index> node_tet;                    // 4 t + corner: the node is that corner of tet t
+  bool has_volume = false;                        // false: nothing above acts
 
   // --- limited springs grouped so that no two of a colour share a node ---
   std::vector<Index> limited;       // spring ids, colour by colour

@@ -64,6 +64,7 @@ class StaticSolver {
   const Model& model_;
   Workspace workspace_;
   ScalarPreconditioner preconditioner_;
+  std::unique_ptr<Model> softened_;  // with less stiff volume, where that helps; else none
 };
 
 }  // namespace sinew

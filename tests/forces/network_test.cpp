@@ -1,0 +1,321 @@
+#include "sinew/forces/network.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "sinew/base/random.h"
+#include "sinew/forces/terms.h"
+#include "sinew/forces/volume.h"
+#include "sinew/forces/volume_law.h"
+#include "tests/support/models.h"
+#include "tests/support/tangent.h"
+
+namespace sinew {
+namespace {
+
+Model irregular_box(const Material& material, int cells = 2, double jitter = 0.25) {
+  BodySpec spec;
+  spec.name = "box";
+  spec.mesh = box(Vec3(0.1, 0.1, 0.1), {cells, cells, cells}, jitter);
+  spec.materials = {material};
+  spec.regions = {"all"};
+  Model m;
+  m.gravity = Vec3::Zero();
+  add_body(m, spec);
+  finish(m);
+  return m;
+}
+
+std::vector<Vec3> affine(const std::vector<Vec3>& X, const Mat3& F) {
+  std::vector<Vec3> x;
+  for (const Vec3& p : X) x.push_back(F * p);
+  return x;
+}
+
+std::vector<Vec3> shaken(const std::vector<Vec3>& X, double size) {
+  std::vector<Vec3> x(X);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] += size * (2.0 * random_point(i + 1000) - Vec3::Ones());
+  }
+  return x;
+}
+
+std::vector<Vec3> forces(const Model& m, const std::vector<Vec3>& x) {
+  Workspace workspace(m);
+  State state = initial_state(m);
+  state.position = x;
+  compute_forces(m, state, workspace);
+  return workspace.force;
+}
+
+// Linear-tet stable neo-Hookean element, written from the deformation gradient: Smith, de Goes, Kim
+// 2018 without the logarithm. Energy [J], and force [N] on the nodes.
+double element_energy(const Model& m, const Material& mat, const std::vector<Vec3>& x,
+                      std::vector<Vec3>* force) {
+  const double mu = mat.young / (2.0 * (1.0 + mat.poisson));
+  const double lambda = mat.young * mat.poisson / ((1.0 + mat.poisson) * (1.0 - 2.0 * mat.poisson));
+  double energy = 0.0;
+  for (const Tet& t : m.tets) {
+    Mat3 rest, now;
+    for (int a = 0; a < 3; ++a) {
+      rest.col(a) = m.rest_position[uz(t[uz(a + 1)])] - m.rest_position[uz(t[0])];
+      now.col(a) = x[uz(t[uz(a + 1)])] - x[uz(t[0])];
+    }
+    const Mat3 inverse = rest.inverse();
+    const Mat3 F = now * inverse;
+    const double J = F.determinant();
+    const double V = rest.determinant() / 6.0;
+    energy += V * (0.5 * mu * (F.squaredNorm() - 3.0) - mu * (J - 1.0) +
+                   0.5 * (lambda + mu) * (J - 1.0) * (J - 1.0));
+    if (force == nullptr) continue;
+    Mat3 cofactor;
+    cofactor.col(0) = F.col(1).cross(F.col(2));
+    cofactor.col(1) = F.col(2).cross(F.col(0));
+    cofactor.col(2) = F.col(0).cross(F.col(1));
+    const Mat3 H =
+        V * (mu * F + (-mu + (lambda + mu) * (J - 1.0)) * cofactor) * inverse.transpose();
+    for (int a = 0; a < 3; ++a) {
+      (*force)[uz(t[uz(a + 1)])] -= H.col(a);
+      (*force)[uz(t[0])] += H.col(a);
+    }
+  }
+  return energy;
+}
+
+TEST(Network, WithBetaOneAndTetCellsIsTheLinearTetElement) {
+  Material material;
+  material.beta = 1.0;
+  material.volume = Volume::tet;
+  material.damping_ratio = 0.0;
+  const Model m = irregular_box(material);
+  Workspace workspace(m);
+  for (const double size : {0.0, 0.002, 0.008}) {
+    const std::vector<Vec3> x = shaken(m.rest_position, size);
+    double smallest = 1.0;
+    for (std::size_t t = 0; t < m.tets.size(); ++t) {
+      smallest = std::min(smallest, signed_volume(x, m.tets[t]) / m.rest_volume[t]);
+    }
+    ASSERT_GT(smallest, guard_threshold);  // the guard is no part of the element
+    std::vector<Vec3> expected(x.size(), Vec3::Zero());
+    const double energy = element_energy(m, material, x, &expected);
+    const std::vector<Vec3> f = forces(m, x);
+    double scale = 0.0;
+    for (const Vec3& e : expected) scale = std::max(scale, e.norm());
+    for (std::size_t i = 0; i < f.size(); ++i) {
+      EXPECT_LE((f[i] - expected[i]).norm(), 1e-10 * std::max(scale, 0.01));
+    }
+    EXPECT_NEAR(elastic_energy(m, x, workspace), energy, 1e-10 * std::max(energy, 1e-3));
+    // Its Hessian product by central differences of the element's own force along a direction.
+    const std::vector<Vec3> u = shaken(std::vector<Vec3>(x.size(), Vec3::Zero()), 1.0);
+    const double h = 1e-6;
+    std::vector<Vec3> up(x), down(x), f_up(x.size(), Vec3::Zero()), f_down(f_up), out(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      up[i] += h * u[i];
+      down[i] -= h * u[i];
+    }
+    element_energy(m, material, up, &f_up);
+    element_energy(m, material, down, &f_down);
+    prepare_stiffness(m, x, workspace);
+    stiffness_damping_times(m, x, 1.0, 0.0, u, Tangent::full, workspace, out);
+    double hu_scale = 0.0;
+    for (const Vec3& o : out) hu_scale = std::max(hu_scale, o.norm());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Vec3 difference = (f_down[i] - f_up[i]) / (2.0 * h);
+      EXPECT_LE((out[i] - difference).norm(), 1e-8 * hu_scale);  // what differences are good for
+    }
+  }
+}
+
+// P = mu F + (kappa (J - 1) - mu) cof F is the same in every tet: the inner nodes are at rest, and
+// the energy is V W(F). Small strain: E, nu and G of the tangent's answer to 1e-6.
+TEST(Network, AffineDeformationOfIrregularMeshesIsExact) {
+  for (const double beta : {0.0, 0.3, 1.0}) {
+    for (const double poisson : {0.0, 0.3, 0.45, 0.499}) {
+      Material material;
+      material.beta = beta;
+      material.poisson = poisson;
+      material.damping_ratio = 0.0;
+      const Model m = irregular_box(material, 4, 0.3);
+      Mat3 F;
+      F << 1.1, 0.2, -0.1, 0.05, 0.9, 0.1, 0.0, -0.15, 1.05;
+      const std::vector<Vec3> f = forces(m, affine(m.rest_position, F));
+      double scale = 0.0;
+      for (const Vec3& e : f) scale = std::max(scale, e.norm());
+      Mat3 stress = Mat3::Zero();
+      for (std::size_t i = 0; i < f.size(); ++i) {
+        const Vec3 X = m.rest_position[i];
+        const bool inner = (X.cwiseAbs().array() < 0.05 - 1e-9).all();
+        if (inner) {
+          EXPECT_LE(f[i].norm(), 1e-11 * scale);
+        }
+        stress -= f[i] * X.transpose();
+      }
+      const double V = m.bodies[0].rest_volume;
+      const double mu = shear_modulus(material.young, poisson);
+      const double kappa = lame_lambda(material.young, poisson) + mu;
+      const double J = F.determinant();
+      const Mat3 P = mu * F + (kappa * (J - 1.0) - mu) * J * F.inverse().transpose();
+      EXPECT_LE((stress / V - P).norm(), 1e-10 * P.norm()) << "beta " << beta << " nu " << poisson;
+
+      Workspace workspace(m);
+      const double W =
+          0.5 * mu * (F.squaredNorm() - 3.0) - mu * (J - 1.0) + 0.5 * kappa * (J - 1.0) * (J - 1.0);
+      EXPECT_NEAR(elastic_energy(m, affine(m.rest_position, F), workspace) / V, W, 1e-10 * W);
+    }
+  }
+}
+
+TEST(Network, ForcesAreTheNegativeGradientOfTheEnergy) {
+  for (const Volume volume : {Volume::none, Volume::tet, Volume::node}) {
+    for (const Law law : {Law::neo_hookean, Law::lloyd, Law::vangelder}) {
+      Material material;
+      material.law = law;
+      material.volume = volume;
+      material.damping_ratio = 0.0;
+      const Model m = irregular_box(material);
+      Workspace workspace(m);
+      for (const double size : {0.005, 0.04}) {  // mild; tets turned over
+        const std::vector<Vec3> x = shaken(m.rest_position, size);
+        const std::vector<Vec3> f = forces(m, x);
+        double scale = 0.0;
+        for (const Vec3& e : f) scale = std::max(scale, e.norm());
+        for (const std::size_t i : {std::size_t{0}, std::size_t{7}, std::size_t{13}}) {
+          for (int c = 0; c < 3; ++c) {
+            const double h = 1e-7;
+            std::vector<Vec3> up(x), down(x);
+            up[i][c] += h;
+            down[i][c] -= h;
+            const double slope =
+                (elastic_energy(m, up, workspace) - elastic_energy(m, down, workspace)) / (2 * h);
+            EXPECT_NEAR(f[i][c], -slope, 2e-6 * scale);
+          }
+        }
+      }
+    }
+  }
+}
+
+TEST(Network, TangentIsSymmetricAndTheDerivativeOfTheForces) {
+  Material material;
+  material.damping_ratio = 0.0;
+  const Model m = irregular_box(material);
+  const std::vector<Vec3> x = shaken(m.rest_position, 0.02);
+  const Eigen::MatrixXd K = test::dense_tangent(m, x);
+  EXPECT_LE((K - K.transpose()).norm(), 1e-12 * K.norm());
+  const std::vector<Vec3> u = shaken(std::vector<Vec3>(x.size(), Vec3::Zero()), 1.0);
+  const double h = 1e-7;
+  std::vector<Vec3> up(x), down(x);
+  Eigen::VectorXd flat(3 * x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    up[i] += h * u[i];
+    down[i] -= h * u[i];
+    flat.segment<3>(static_cast<Eigen::Index>(3 * i)) = u[i];
+  }
+  const std::vector<Vec3> f_up = forces(m, up);
+  const std::vector<Vec3> f_down = forces(m, down);
+  const Eigen::VectorXd product = K * flat;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 expected = (f_down[i] - f_up[i]) / (2.0 * h);
+    EXPECT_LE((product.segment<3>(static_cast<Eigen::Index>(3 * i)) - expected).norm(),
+              1e-6 * product.norm());
+  }
+}
+
+TEST(Network, KeepsMomentumAndAngularMomentum) {
+  Material material;
+  const Model m = irregular_box(material);
+  const std::vector<Vec3> x = shaken(m.rest_position, 0.03);
+  const std::vector<Vec3> f = forces(m, x);
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  double scale = 0.0;
+  for (std::size_t i = 0; i < f.size(); ++i) {
+    force += f[i];
+    torque += x[i].cross(f[i]);
+    scale += f[i].norm();
+  }
+  EXPECT_LE(force.norm(), 1e-13 * scale);
+  EXPECT_LE(torque.norm(), 1e-13 * scale);
+}
+
+// Regions of different stiffness: the body is at rest at rest, whatever borders on what.
+TEST(Network, BordersBetweenMaterialsAreAtRest) {
+  BodySpec spec;
+  spec.name = "box";
+  spec.mesh = box(Vec3(0.1, 0.1, 0.1), {3, 3, 3}, 0.2);
+  Material soft, hard, classic;
+  hard.young = 50.0 * soft.young;
+  hard.poisson = 0.3;
+  classic.law = Law::lloyd;
+  spec.materials = {soft, hard, classic};
+  spec.regions = {"soft", "hard", "classic"};
+  for (Index t = 0; t < spec.mesh.tet_count(); ++t) spec.tet_region.push_back(t % 3);
+  Model m;
+  m.gravity = Vec3::Zero();
+  add_body(m, spec);
+  finish(m);
+  for (const Vec3& f : forces(m, m.rest_position)) {
+    EXPECT_LE(f.norm(), 1e-12 * hard.young * 0.01);
+  }
+}
+
+// A tet mesh made bad: one node is pushed towards the opposite face of one of its tets, until that
+// tet keeps a thousandth of the mean volume, if no other tet turns over.
+TetMesh with_sliver(Index seed) {
+  const auto n = static_cast<std::uint64_t>(seed);
+  TetMesh mesh = box(Vec3(0.1, 0.1, 0.1), {2, 2, 2}, 0.35 * random_number(7 * n));
+  const std::vector<Vec3> start = mesh.nodes;
+  for (std::size_t i = 0; i < mesh.nodes.size(); ++i) {
+    mesh.nodes[i] += 0.006 * (2.0 * random_point(100 * n + i) - Vec3::Ones());
+  }
+  const double mean = 0.001 / static_cast<double>(mesh.tets.size());
+  for (std::uint64_t attempt = 0; attempt < 40; ++attempt) {
+    const auto t = static_cast<std::size_t>(random_number(991 * n + attempt) *
+                                            static_cast<double>(mesh.tets.size()));
+    const Tet tet = mesh.tets[t];
+    const Vec3 a = mesh.nodes[uz(tet[1])];
+    const Vec3 normal = (mesh.nodes[uz(tet[2])] - a).cross(mesh.nodes[uz(tet[3])] - a).normalized();
+    const Vec3 kept = mesh.nodes[uz(tet[0])];
+    const double volume = signed_volume(mesh.nodes, tet);
+    mesh.nodes[uz(tet[0])] -= (1.0 - 0.001 * mean / volume) * normal.dot(kept - a) * normal;
+    double smallest = 1.0;
+    for (const Tet& other : mesh.tets) {
+      smallest = std::min(smallest, signed_volume(mesh.nodes, other) / mean);
+    }
+    if (smallest > 0.0009) return mesh;
+    mesh.nodes[uz(tet[0])] = kept;
+  }
+  mesh.nodes = start;
+  return mesh;
+}
+
+TEST(Network, HasNoSpuriousModeOnRandomMeshesWithSlivers) {
+  int slivers = 0;
+  for (Index seed = 0; seed < 200; ++seed) {
+    BodySpec spec;
+    spec.name = "box";
+    spec.mesh = with_sliver(seed);
+    Material material;
+    material.poisson = std::array{0.0, 0.3, 0.45, 0.49, 0.499}[uz(seed % 5)];
+    spec.materials = {material};
+    spec.regions = {"all"};
+    Model m;
+    add_body(m, spec);
+    finish(m);
+    double smallest = 1.0;
+    for (const double v : m.rest_volume) smallest = std::min(smallest, v);
+    slivers += smallest * static_cast<double>(m.tets.size()) < 0.0011 * 0.001 ? 1 : 0;
+    const Eigen::MatrixXd K = test::dense_tangent(m, m.rest_position);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(K, Eigen::EigenvaluesOnly);
+    const Eigen::VectorXd& e = solver.eigenvalues();
+    const double unit = material.young * 0.1;  // what a mode of the whole box has
+    EXPECT_LE(std::abs(e(0)), 1e-9 * e(e.size() - 1)) << "seed " << seed;
+    EXPECT_GT(e(6), 1e-3 * unit) << "seed " << seed << " nu " << material.poisson;
+    EXPECT_LE(std::abs(e(5)), 1e-3 * e(6)) << "seed " << seed;
+  }
+  EXPECT_GT(slivers, 100);
+}
+
+}  // namespace
+}  // namespace sinew
