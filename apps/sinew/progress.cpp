@@ -140,6 +140,12 @@ std::string format_table(const Summary& s) {
     row("probe", fmt::format("{} moved {}: ({:.4g}, {:.4g}, {:.4g}) mm", p.name,
                              scaled(p.displacement.norm(), "m"), d.x(), d.y(), d.z()));
   }
+  for (const ObstacleReading& o : s.obstacles) {
+    row("obstacle", fmt::format("{} bears {:.4g} N: ({:.4g}, {:.4g}, {:.4g}) N, {} nodes in it, {} "
+                                "deep",
+                                o.name, o.force.norm(), o.force.x(), o.force.y(), o.force.z(),
+                                grouped(o.contacts), scaled(o.depth, "m")));
+  }
   row("state hash", s.state_hash);
   if (!s.look_for.empty()) t += fmt::format("\nLook for: {}\n", s.look_for);
   for (const std::string& w : s.warnings) t += fmt::format("warning: {}\n", w);

@@ -220,6 +220,16 @@ const std::vector<Bad>& bad_scenes() {
        "scene.toml:5:30: 'deform' in key frame 0 of [pin.end] is an array of 3; expected 9 "
        "numbers\n"
        "  remedy: the default is deform = [1, 0, 0, 0, 1, 0, 0, 0, 1]"},
+      {BEAM "[obstacle.ball]\nradius = 1\n",
+       "scene.toml:3:1: [obstacle.ball] has no 'center'\n"
+       "  remedy: add center (docs/scene-format.md)"},
+      {BEAM "[obstacle.a]\ncenter = [0, 0, 0]\nradius = 1\n[probe.a]\nselect = { all = true }\n",
+       "scene.toml:3:1: an obstacle and a probe are both called 'a'\n"
+       "  remedy: they share the table probes.csv: rename one of them"},
+      {BEAM "start = \"flatt\"\n",
+       "scene.toml:3:9: 'start' in [body.beam] is \"flatt\"; expected one of \"rest\", \"flat\", "
+       "\"inverted\", \"random\"; did you mean 'flat'?\n"
+       "  remedy: the default is start = \"rest\""},
       {BEAM "jitter = 0.5\n",
        "scene.toml:3:10: 'jitter' in [body.beam] is 0.5; expected from 0 to 0.45\n"
        "  remedy: the default is jitter = 0"},

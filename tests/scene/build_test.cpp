@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "sinew/model/state.h"
 #include "tests/scene/support.h"
 
 namespace sinew {
@@ -214,6 +215,68 @@ TEST(Build, ALoadByAreaNeedsATriangle) {
             "the surface\n"
             "  remedy: tractions and pressures act on whole triangles: select more nodes, or give "
             "a force");
+}
+
+TEST(Build, ObstaclesTakeTheirStiffnessFromTheBodies) {
+  const std::string box = "[body.b]\nshape = \"box\"\nyoung = 1e4\npoisson = 0.4\n";
+  const std::string ball = "[obstacle.o]\ncenter = [0, 1, 2]\nradius = 0.05\n";
+  const Model m = build(box + ball + "path = [{ time = 1, move = [0, -1, 0] }]\n");
+  ASSERT_EQ(m.obstacles.size(), 1U);
+  EXPECT_EQ(m.obstacles[0].name, "o");
+  EXPECT_EQ(m.obstacles[0].radius, 0.05);
+  EXPECT_DOUBLE_EQ(m.obstacles[0].stiffness, 200 * 1e4 / (1 - 0.16) / 0.05);
+  EXPECT_EQ(m.obstacles[0].path.pivot, Vec3(0, 1, 2));
+  EXPECT_EQ(m.obstacles[0].path.at(1.0, m.obstacles[0].center), Vec3(0, 0, 2));
+  EXPECT_NEAR(sum(m.surface_share), 0.18, 1e-14);
+  // The smallest side of the body, where it is less than the radius; a given value as it is.
+  EXPECT_DOUBLE_EQ(build(box + ball, {"o.radius=3"}).obstacles[0].stiffness,
+                   200 * 1e4 / (1 - 0.16) / 0.1);
+  EXPECT_EQ(build(box + ball + "stiffness = 7\n").obstacles[0].stiffness, 7.0);
+  EXPECT_NE(build(box + ball).hash(), build(box + ball, {"o.radius=0.06"}).hash());
+  EXPECT_EQ(
+      build_error("[body.b]\nshape = \"box\"\nsize = [100, 100, 100]\n" + ball +
+                  "stiffness = 1e308\n"),
+      "scene.toml:4:1: [obstacle.o] is too stiff to compute with\n"
+      "  remedy: check its stiffness, and young and scale of the bodies; they are in SI units");
+}
+
+TEST(Build, BodiesStartFlatInvertedOrRandom) {
+  const std::string scene = R"(
+[body.first]
+shape = "box"
+[body.b]
+shape = "box"
+size = [0.3, 0.1, 0.2]
+cells = [3, 2, 3]
+position = [0, 1, 0]
+[pin.end]
+body = "b"
+select = { side = "-x" }
+)";
+  const Model rest = build(scene);
+  EXPECT_TRUE(rest.start_position.empty());
+  const auto first = static_cast<std::size_t>(rest.bodies[1].nodes.begin);
+  for (const char* word : {"flat", "inverted", "random"}) {
+    const Model m = build(scene, {std::string("b.start=") + word});
+    EXPECT_EQ(m.rest_position, rest.rest_position);
+    EXPECT_NE(m.hash(), rest.hash());
+    const State s = initial_state(m);
+    for (std::size_t i = 0; i < s.position.size(); ++i) {
+      const Vec3& x = s.position[i];
+      const Vec3& X = m.rest_position[i];
+      if (i < first || m.inverse_mass[i] == 0.0) {
+        EXPECT_EQ(x, X);
+      } else if (word == std::string("flat")) {
+        EXPECT_LT((x - Vec3(X.x(), 1.0, X.z())).norm(), 1e-15);
+      } else if (word == std::string("inverted")) {
+        EXPECT_LT((x - Vec3(X.x(), 2.0 - X.y(), X.z())).norm(), 1e-15);
+      } else {
+        EXPECT_TRUE(
+            ((x - Vec3(0, 1, 0)).cwiseAbs().array() <= Vec3(0.15, 0.05, 0.1).array()).all());
+        EXPECT_NE(x, X);
+      }
+    }
+  }
 }
 
 TEST(Build, KeyFramesDeform) {

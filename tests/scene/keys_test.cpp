@@ -58,8 +58,9 @@ TEST(Keys, HaveAMeaningInTheDocument) {
 TEST(Keys, AreUniqueInTablesReadTogether) {
   const KeyTables& t = key_tables();
   using Group = std::vector<const KeyTable*>;
-  for (const Group& group : {Group{&t.body, &t.material}, Group{&t.region, &t.material},
-                             Group{&t.pin, &t.motion}, Group{&t.attachment, &t.motion}}) {
+  for (const Group& group :
+       {Group{&t.body, &t.material}, Group{&t.region, &t.material}, Group{&t.pin, &t.motion},
+        Group{&t.attachment, &t.motion}, Group{&t.obstacle, &t.motion}}) {
     std::set<std::string_view> names;
     for (const KeyTable* table : group)
       for (const Key& key : table->keys) EXPECT_TRUE(names.insert(key.name).second) << key.name;

@@ -9,6 +9,7 @@
 #include "sinew/base/parallel.h"
 #include "sinew/forces/limits.h"
 #include "sinew/forces/loads.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/terms.h"
 #include "sinew/solver/stable_step.h"
 #include "tests/support/models.h"
@@ -269,6 +270,50 @@ TEST(Verlet, LoadsActWhileTheyLastAndTheirWorkIsCounted) {
   EXPECT_NEAR(s.half_velocity[0].x(), 1.0, 2e-3);
   Workspace w(m);
   EXPECT_NEAR(measure_energies(m, s, w).kinetic, s.energy.work_in, 1e-12);
+}
+
+TEST(Verlet, AMovingObstaclePressesAndItsWorkIsCounted) {
+  Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.5}, {4, 4, 4});
+  m.gravity = Vec3::Zero();
+  m.pins = {{"floor", test::nodes_at(m, 1, -0.05), {}}};
+  Path path;
+  path.keys = {{0.2, Vec3(0, -0.02, 0), Vec3::Zero()}};
+  path.smooth = true;
+  add_obstacle(m, {"ball", Vec3(0.01, 0.09, 0), 0.04, 2e8, path});
+  finish(m);
+  Workspace w(m);
+  State s = initial_state(m);
+  const double h = 0.5 * find_stable_step(m, s.position, w).step;
+  while (s.time < 0.6) verlet_step(m, h, s, w);
+  const ObstacleReading ball = read_obstacles(m, s.position, s.time)[0];
+  EXPECT_GT(ball.contacts, 3);
+  EXPECT_GT(ball.force.y(), 1.0);
+  EXPECT_LT(ball.depth, 2e-4);  // of 20 mm
+  const Energies e = measure_energies(m, s, w);
+  EXPECT_GT(e.work_in, 0.0);
+  EXPECT_LT(e.kinetic, 1e-2 * e.work_in);
+  EXPECT_LT(std::abs(e.total()), 0.01 * e.work_in);
+}
+
+TEST(Verlet, AnElasticImpactOnAnObstacleKeepsTheEnergy) {
+  Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.0}, {3, 3, 3});
+  m.gravity = Vec3::Zero();
+  for (Vec3& v : m.start_velocity) v = Vec3(0, -0.5, 0);
+  add_obstacle(m, {"ball", Vec3(0.01, -0.1, 0), 0.04, 2e8});
+  finish(m);
+  Workspace w(m);
+  State s = initial_state(m);
+  const double start = measure_energies(m, s, w).total();
+  const double h = 0.3 * find_stable_step(m, s.position, w).step;
+  double deepest = 0.0;
+  while (s.time < 0.3) {
+    verlet_step(m, h, s, w);
+    deepest = std::max(deepest, measure_energies(m, s, w).contact);
+  }
+  EXPECT_GT(deepest, 1e-3 * start);
+  EXPECT_EQ(read_obstacles(m, s.position, s.time)[0].contacts, 0);
+  EXPECT_GT(momentum(m, s).y(), 0.0);  // it came back
+  EXPECT_NEAR(measure_energies(m, s, w).total(), start, 0.02 * start);
 }
 
 TEST(Verlet, LoadsRampUp) {

@@ -1,13 +1,15 @@
 #include "sinew/forces/springs.h"
 
 #include "sinew/base/parallel.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
 
 namespace sinew {
 
 Workspace::Workspace(const Model& model)
     : spring_force(model.springs.size(), Vec3::Zero()),
-      force(model.rest_position.size(), Vec3::Zero()) {
+      force(model.rest_position.size(), Vec3::Zero()),
+      obstacle_center(obstacle_centers(model, 0.0)) {
   if (!model.has_volume) return;
   tet_volume.resize(model.tets.size());
   tet_pressure.resize(model.tets.size());

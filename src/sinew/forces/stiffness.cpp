@@ -2,6 +2,7 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/network.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/volume.h"
@@ -31,6 +32,7 @@ void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double
   }
   const bool volume = model.has_volume && a != 0.0;
   const bool network = !model.network_start.empty() && a != 0.0;
+  const bool pressed = only_stiffening && !model.obstacles.empty();
   if (volume) compute_volume_force_change(model, x, a, u, workspace);
   parallel_for(model.node_count(), [&](Index i) {
     const auto n = uz(i);
@@ -39,7 +41,10 @@ void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double
     out[n] = b * model.drag[n] * model.mass[n] * u[n] - gather_springs(model, workspace, i);
     if (network) out[n] -= a * network_pull(model, u, i);
     if (volume) out[n] -= gather_tets(model, workspace, i);
+    if (pressed) out[n] += a * largest_obstacle_stiffness(model, i) * u[n];
   });
+  if (!only_stiffening)
+    add_obstacle_stiffness_times(model, x, workspace.obstacle_center, a, u, false, out);
 }
 
 }  // namespace sinew

@@ -9,15 +9,17 @@
 
 namespace sinew {
 
-// Which tangent of the classic springs: the true one, or the one without the negative transverse
-// part of compressed springs, which is positive semidefinite.
+// Which tangent: the true one; or, of the classic springs, the one without the negative transverse
+// part of compressed springs, which is positive semidefinite, and with obstacles pressing on every
+// node of the surface: what the step has to be stable for.
 enum class Tangent { full, only_stiffening };
 
 // Call before the products below whenever x has changed: keeps the pressures at x in the workspace.
 void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& workspace);
 
-// out = (a K + b C) u at positions x: K the second derivative of the energies of springs, network
-// and volume, C the dashpots and the drag. Nodes whose motion is given get 0; their u counts.
+// out = (a K + b C) u at positions x: K the second derivative of the energies of springs,
+// network, volume and obstacles (where compute_forces last saw them), C the dashpots and the drag.
+// Nodes whose motion is given get 0; their u counts.
 void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double a, double b,
                              std::span<const Vec3> u, Tangent tangent, Workspace& workspace,
                              std::span<Vec3> out);

@@ -3,6 +3,7 @@
 #include "sinew/base/parallel.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/network.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
@@ -48,6 +49,8 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
   for (const double p : workspace.partial) power += p;
 
   add_load_forces(model, state.position, state.time, 1.0, workspace.force);
+  add_obstacle_forces(model, state.position, state.time, workspace.force);
+  workspace.obstacle_center = obstacle_centers(model, state.time);
   return power;
 }
 
@@ -71,11 +74,13 @@ std::vector<Vec3> outer_forces(const Model& model, const State& state) {
     if (model.inverse_mass[uz(i)] > 0.0) f[uz(i)] = model.mass[uz(i)] * model.gravity;
   });
   add_load_forces(model, state.position, state.time, 1.0, f);
+  add_obstacle_forces(model, state.position, state.time, f);
   return f;
 }
 
 double potential_energy(const Model& model, const State& state, Workspace& workspace) {
-  return elastic_energy(model, state.position, workspace) + outer_potential(model, state);
+  return elastic_energy(model, state.position, workspace) + outer_potential(model, state) +
+         obstacle_energy(model, state.position, state.time);
 }
 
 Energies measure_energies(const Model& model, const State& state, Workspace& workspace) {
@@ -92,6 +97,7 @@ Energies measure_energies(const Model& model, const State& state, Workspace& wor
     return -model.mass[k] * model.gravity.dot(state.position[k] - model.rest_position[k]);
   });
   e.elastic = elastic_energy(model, state.position, workspace);
+  e.contact = obstacle_energy(model, state.position, state.time);
   e.dissipated = state.energy.dissipated;
   e.work_in = state.energy.work_in;
   return e;

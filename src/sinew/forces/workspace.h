@@ -11,9 +11,10 @@ namespace sinew {
 struct Workspace {
   explicit Workspace(const Model& model);
 
-  std::vector<Vec3> spring_force;  // on end 0 of each spring [N] (springs)
-  std::vector<Vec3> force;         // total on each node [N] (nodes)
-  std::vector<double> partial;     // sums of blocks, whatever they are of
+  std::vector<Vec3> spring_force;     // on end 0 of each spring [N] (springs)
+  std::vector<Vec3> force;            // total on each node [N] (nodes)
+  std::vector<double> partial;        // sums of blocks, whatever they are of
+  std::vector<Vec3> obstacle_center;  // where compute_forces last saw them [m] (obstacles)
 
   // Volume terms; empty where the model has none.
   std::vector<double> tet_volume;     // v_t [m3] (tets)

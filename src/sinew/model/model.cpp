@@ -13,6 +13,17 @@ void hash_vec(Hash& h, const Vec3& v) {
   h.value(v.z());
 }
 
+void hash_path(Hash& h, const Path& path) {
+  hash_vec(h, path.pivot);
+  h.value(path.smooth);
+  for (const KeyFrame& k : path.keys) {
+    h.value(k.time);
+    hash_vec(h, k.move);
+    hash_vec(h, k.turn);
+    for (const double f : k.deform.reshaped()) h.value(f);
+  }
+}
+
 }  // namespace
 
 std::uint64_t Model::hash() const {
@@ -22,6 +33,7 @@ std::uint64_t Model::hash() const {
   h.array(inverse_mass);
   h.array(drag);
   h.array(start_velocity);
+  h.array(start_position);
   h.array(tets);
   h.array(tet_region);
   h.array(springs);
@@ -56,14 +68,7 @@ std::uint64_t Model::hash() const {
   for (const Pin& pin : pins) {
     h.text(pin.name);
     h.array(pin.nodes);
-    hash_vec(h, pin.path.pivot);
-    h.value(pin.path.smooth);
-    for (const KeyFrame& k : pin.path.keys) {
-      h.value(k.time);
-      hash_vec(h, k.move);
-      hash_vec(h, k.turn);
-      for (const double f : k.deform.reshaped()) h.value(f);
-    }
+    hash_path(h, pin.path);
   }
   for (const Load& load : loads) {
     h.array(load.nodes);
@@ -79,6 +84,13 @@ std::uint64_t Model::hash() const {
   for (const Probe& probe : probes) {
     h.text(probe.name);
     h.array(probe.nodes);
+  }
+  for (const Obstacle& o : obstacles) {
+    h.text(o.name);
+    hash_vec(h, o.center);
+    h.value(o.radius);
+    h.value(o.stiffness);
+    hash_path(h, o.path);
   }
   return h.digest();
 }

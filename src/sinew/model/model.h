@@ -54,6 +54,15 @@ struct Ground {
   double friction = 0.5;        // [-] Coulomb's mu >= 0
 };
 
+// A rigid, frictionless sphere that presses on the bodies (forces/obstacles.h).
+struct Obstacle {
+  std::string name;
+  Vec3 center = Vec3::Zero();  // [m], before its path moves it
+  double radius = 0.0;         // [m] > 0
+  double stiffness = 0.0;      // [N/m3] > 0: pressure per depth
+  Path path = {};              // moves the centre
+};
+
 // A named selection whose mean is reported each frame.
 struct Probe {
   std::string name;
@@ -67,6 +76,7 @@ struct Model {
   std::vector<double> inverse_mass;  // 1/m [1/kg] (nodes), 0 where the motion is given (pins)
   std::vector<double> drag;          // [1/s] (nodes)
   std::vector<Vec3> start_velocity;  // [m/s] (nodes)
+  std::vector<Vec3> start_position;  // [m] (nodes of bodies); empty: rest_position
 
   // --- tets ---
   std::vector<Tet> tets;            // node ids (tets)
@@ -121,6 +131,9 @@ struct Model {
   std::vector<Pin> pins;
   std::vector<Load> loads;
   std::vector<Probe> probes;
+  std::vector<Obstacle> obstacles;
+  std::vector<double> surface_share;  // a third of the rest area of its surface triangles [m2]
+                                      // (nodes of bodies); empty where there are no obstacles
 
   Index node_count() const { return static_cast<Index>(rest_position.size()); }
   Index tet_count() const { return static_cast<Index>(tets.size()); }

@@ -1,6 +1,6 @@
 #include "sinew/model/state.h"
 
-#include <cstddef>
+#include <algorithm>
 
 #include "sinew/base/hash.h"
 
@@ -19,6 +19,7 @@ std::uint64_t State::hash() const {
 State initial_state(const Model& model) {
   State s;
   s.position = model.rest_position;
+  std::copy(model.start_position.begin(), model.start_position.end(), s.position.begin());
   s.half_velocity = model.start_velocity;
   for (const Pin& pin : model.pins) {
     for (const Index node : pin.nodes) {

@@ -28,7 +28,7 @@ struct State {
   std::uint64_t hash() const;
 };
 
-// Every node at rest position with its start velocity, pins where their paths begin.
+// Every node at its start position with its start velocity, pins where their paths begin.
 State initial_state(const Model& model);
 
 }  // namespace sinew

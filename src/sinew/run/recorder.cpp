@@ -8,6 +8,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/terms.h"
 #include "sinew/io/file_io.h"
@@ -31,11 +32,16 @@ std::string probe_header(const Model& model) {
     for (const char* c : {"x", "y", "z"}) header += fmt::format(",{}.{} [m]", p.name, c);
     for (const char* c : {"ux", "uy", "uz"}) header += fmt::format(",{}.{} [m]", p.name, c);
   }
+  for (const Obstacle& o : model.obstacles) {
+    for (const char* c : {"x", "y", "z"}) header += fmt::format(",{}.{} [m]", o.name, c);
+    for (const char* c : {"fx", "fy", "fz"}) header += fmt::format(",{}.{} [N]", o.name, c);
+  }
   return header;
 }
 
 constexpr std::string_view energy_header =
-    "time [s],step [s],kinetic [J],elastic [J],gravity [J],dissipated [J],work_in [J],total [J],"
+    "time [s],step [s],kinetic [J],elastic [J],gravity [J],contact [J],dissipated [J],work_in "
+    "[J],total [J],"
     "volume_ratio,max_stretch,max_compress,contacts";
 
 // The file with its header and, of an earlier run, the first `rows` rows: opened to go on.
@@ -109,10 +115,14 @@ void Recorder::record(RunState& run, Workspace& workspace) {
 
   const std::vector<Vec3>& x = run.state.position;
   std::string row = fmt::format("{}", run.state.time);
+  const auto add = [&](const Vec3& v) { row += fmt::format(",{},{},{}", v.x(), v.y(), v.z()); };
   for (const ProbeReading& p : read_probes(model_, x)) {
-    for (const Vec3& v : {p.position, p.displacement}) {
-      row += fmt::format(",{},{},{}", v.x(), v.y(), v.z());
-    }
+    add(p.position);
+    add(p.displacement);
+  }
+  for (const ObstacleReading& o : read_obstacles(model_, x, run.state.time)) {
+    add(o.center);
+    add(o.force);
   }
   add_row(probes_, folder_ / "probes.csv", row);
 
@@ -124,9 +134,9 @@ void Recorder::record(RunState& run, Workspace& workspace) {
     volume += body.rest_volume * volume_ratio(model_, body, x);
   }
   add_row(energy_, folder_ / "energy.csv",
-          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{}", run.state.time, run.step, e.kinetic,
-                      e.elastic, e.gravity, e.dissipated, e.work_in, e.total(), volume / rest,
-                      range.stretch, range.compress, run.contacts));
+          fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", run.state.time, run.step, e.kinetic,
+                      e.elastic, e.gravity, e.contact, e.dissipated, e.work_in, e.total(),
+                      volume / rest, range.stretch, range.compress, run.contacts));
 }
 
 void Recorder::write_frame(const RunState& run, const std::vector<Vec3>& velocity) const {

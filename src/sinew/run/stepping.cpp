@@ -39,8 +39,11 @@ double typed_step(double h) {
       Location{scene.file});
 }
 
-// Rest states differ from frame to frame only where pins or loads change with time.
+// Rest states differ from frame to frame only where pins, loads or obstacles change with time.
 bool changes_with_time(const Model& model) {
+  for (const Obstacle& o : model.obstacles) {
+    if (!o.path.keys.empty()) return true;
+  }
   for (const Pin& pin : model.pins) {
     if (!pin.path.keys.empty()) return true;
   }

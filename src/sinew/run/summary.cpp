@@ -99,6 +99,7 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.residual = run.residual;
   s.largest_cell_change = largest_cell_change(model, x);
   s.probes = read_probes(model, x);
+  s.obstacles = read_obstacles(model, x, run.state.time);
   return s;
 }
 
@@ -120,6 +121,13 @@ nlohmann::ordered_json to_json(const Summary& s) {
   nlohmann::ordered_json probes = nlohmann::ordered_json::object();
   for (const ProbeReading& p : s.probes) {
     probes[p.name] = {{"position", vec(p.position)}, {"displacement", vec(p.displacement)}};
+  }
+  nlohmann::ordered_json obstacles = nlohmann::ordered_json::object();
+  for (const ObstacleReading& o : s.obstacles) {
+    obstacles[o.name] = {{"center", vec(o.center)},
+                         {"force", vec(o.force)},
+                         {"depth", o.depth},
+                         {"contacts", o.contacts}};
   }
   return {{"version", SINEW_VERSION},
           {"status", s.status},
@@ -147,6 +155,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
            {{"kinetic", s.energy.kinetic},
             {"elastic", s.energy.elastic},
             {"gravity", s.energy.gravity},
+            {"contact", s.energy.contact},
             {"dissipated", s.energy.dissipated},
             {"work_in", s.energy.work_in},
             {"drift", s.energy_drift}}},
@@ -164,6 +173,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
             {"violation", s.limit_violation}}},
           {"state_hash", s.state_hash},
           {"probes", probes},
+          {"obstacles", obstacles},
           {"warnings", s.warnings}};
 }
 

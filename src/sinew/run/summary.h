@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/terms.h"
 #include "sinew/run/stepping.h"
 
@@ -55,6 +56,7 @@ struct Summary {
   double residual = 0.0;                        // static: |f| over what the nodes carry
   double largest_cell_change = 0.0;             // of a node cell's volume, at the end [-]
   std::vector<ProbeReading> probes;
+  std::vector<ObstacleReading> obstacles;
   std::vector<std::string> warnings;
 
   double realtime_factor() const { return wall_seconds > 0.0 ? sim_seconds / wall_seconds : 0.0; }

@@ -9,11 +9,14 @@
 #include <set>
 
 #include "sinew/forces/assemble.h"
+#include "sinew/forces/laws.h"
 #include "sinew/forces/loads.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/surface.h"
 #include "sinew/scene/place.h"
 #include "sinew/scene/select.h"
+#include "sinew/scene/start.h"
 
 namespace sinew {
 
@@ -87,6 +90,15 @@ void check_finite(const Model& model, const SceneBody& body) {
                 "check its density, stiffness and scale; they are in SI units", body.where);
 }
 
+void set_start(const std::vector<PlacedBody>& bodies, Model& model) {
+  for (const PlacedBody& placed : bodies) {
+    const std::vector<Vec3> start = start_positions(placed);
+    if (start.empty()) continue;
+    if (model.start_position.empty()) model.start_position = model.rest_position;
+    std::copy(start.begin(), start.end(), model.start_position.begin() + placed.first_node);
+  }
+}
+
 std::vector<PlacedBody> add_bodies(const Scene& scene, Model& model, BuildReport* report) {
   std::vector<PlacedBody> bodies;
   for (const SceneBody& body : scene.bodies) {
@@ -110,10 +122,33 @@ std::vector<PlacedBody> add_bodies(const Scene& scene, Model& model, BuildReport
                                 placed.mesh.tet_count(), placed.warnings});
     bodies.push_back(std::move(placed));
   }
+  set_start(bodies, model);
   return bodies;
 }
 
 // ---- what acts on them ----
+
+// Pressure per depth of an obstacle [N/m3], so that it enters the stiffest body by a small part of
+// the radius a of the contact. Hertz: the largest pressure is 2 E* a / (pi R), E* = E / (1 - nu^2),
+// the depth that over this stiffness: 2 / (200 pi) a = 0.3 % of a where R is the smaller length.
+double default_obstacle_stiffness(const std::vector<PlacedBody>& bodies, double radius) {
+  double length = radius;
+  double modulus = 0.0;
+  for (const PlacedBody& placed : bodies) {
+    length = std::min(length, (placed.high - placed.low).minCoeff());
+    double volume = 0.0;
+    for (const Tet& t : placed.mesh.tets) volume += signed_volume(placed.mesh.nodes, t);
+    const double edge = regular_edge(volume / placed.mesh.tet_count());
+    const auto consider = [&](const Material& m) {
+      // A uniform spring k is about what Lloyd's law gives an edge of five tets for E = 2 k / l.
+      const double young = m.law == Law::uniform ? 2.0 * m.spring_stiffness / edge : m.young;
+      modulus = std::max(modulus, young / (1.0 - std::min(0.25, m.poisson * m.poisson)));
+    };
+    consider(placed.body->material);
+    for (const SceneRegion& region : placed.body->regions) consider(region.material);
+  }
+  return 200.0 * modulus / length;
+}
 
 class Parts {
  public:
@@ -132,6 +167,7 @@ class Parts {
       else
         attach_to_body(a);
     }
+    for (const SceneObstacle& o : scene_.obstacles) add_obstacle_of(o);
   }
 
  private:
@@ -200,6 +236,19 @@ class Parts {
                   "tractions and pressures act on whole triangles: select more nodes, or give a "
                   "force",
                   where);
+  }
+
+  void add_obstacle_of(const SceneObstacle& o) {
+    Obstacle obstacle{o.name, o.center, o.radius,
+                      o.stiffness.value_or(default_obstacle_stiffness(bodies_, o.radius)), o.path};
+    if (!o.pivot_given) obstacle.path.pivot = o.center;
+    add_obstacle(model_, std::move(obstacle));
+    for (Index i = 0; i < model_.body_node_count(); ++i)
+      if (!std::isfinite(largest_obstacle_stiffness(model_, i)))
+        throw Error(ErrorKind::input,
+                    fmt::format("[obstacle.{}] is too stiff to compute with", o.name),
+                    "check its stiffness, and young and scale of the bodies; they are in SI units",
+                    o.where);
   }
 
   void attach_to_point(const SceneAttachment& a) {

@@ -73,6 +73,7 @@ KeyTables make_tables() {
                  other("attachment", T::table),
                  other("force", T::table),
                  other("probe", T::table),
+                 other("obstacle", T::table),
                  other("ground", T::table),
                  other("output", T::table),
              }};
@@ -95,6 +96,7 @@ KeyTables make_tables() {
                 point("position", "m", "[0, 0, 0]"),
                 point("velocity", "m/s", "[0, 0, 0]"),
                 point("spin", "rad/s", "[0, 0, 0]"),
+                word("start", "\"rest\"", "rest flat inverted random"),
                 other("region", T::table),
             }};
   t.material = {
@@ -184,6 +186,13 @@ KeyTables make_tables() {
                  number("ramp", "s", "0", not_negative),
              }};
   t.probe = {"probe", "[probe.NAME]", {text("body", "the only one"), other("select", T::table)}};
+  t.obstacle = {"obstacle",
+                "[obstacle.NAME]",
+                {
+                    point("center", "m"),
+                    number("radius", "m", "", positive),
+                    number("stiffness", "N/m3", "the stiffest body's", positive),
+                }};
   t.ground = {"ground",
               "[ground]",
               {
@@ -230,8 +239,8 @@ const Key* KeyTable::find(std::string_view key) const {
 }
 
 std::vector<const KeyTable*> KeyTables::all() const {
-  return {&scene,  &body,       &material, &region,     &motion, &key_frame, &select, &box,
-          &sphere, &half_space, &pin,      &attachment, &force,  &probe,     &ground, &output};
+  return {&scene,      &body, &material,   &region, &motion, &key_frame, &select, &box,   &sphere,
+          &half_space, &pin,  &attachment, &force,  &probe,  &obstacle,  &ground, &output};
 }
 
 const KeyTables& key_tables() {

@@ -57,6 +57,15 @@ void parse_named(const Reader& root, std::string_view kind, std::vector<Part>& o
   }
 }
 
+// Probes and obstacles name the columns of one table.
+void refuse_shared_columns(const Scene& scene, const Reader& root) {
+  for (const SceneObstacle& o : scene.obstacles)
+    for (const SceneProbe& p : scene.probes)
+      if (o.name == p.name)
+        root.fail("obstacle", fmt::format("an obstacle and a probe are both called '{}'", o.name),
+                  "they share the table probes.csv: rename one of them");
+}
+
 Scene parse_root(const DocValue& document) {
   const Reader root(document, "the scene", {&key_tables().scene});
   Scene scene;
@@ -89,6 +98,8 @@ Scene parse_root(const DocValue& document) {
   parse_named(root, "attachment", scene.attachments, with_bodies(parse_attachment));
   parse_named(root, "force", scene.forces, with_bodies(parse_force));
   parse_named(root, "probe", scene.probes, with_bodies(parse_probe));
+  parse_named(root, "obstacle", scene.obstacles, parse_obstacle);
+  refuse_shared_columns(scene, root);
   if (const DocValue* ground = root.table("ground")) scene.ground = parse_ground(*ground);
   if (const DocValue* output = root.table("output")) scene.output = parse_output(*output);
   if (scene.duration * scene.output.fps > kMaxFrames)

@@ -18,9 +18,12 @@ SceneAttachment parse_attachment(const std::string& name, const DocValue& value,
                                  const BodyNames& bodies);
 SceneForce parse_force(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneProbe parse_probe(const std::string& name, const DocValue& value, const BodyNames& bodies);
+SceneObstacle parse_obstacle(const std::string& name, const DocValue& value);
 SceneGround parse_ground(const DocValue& value);
 SceneOutput parse_output(const DocValue& value);
 
+// Throws where the table lacks a key that it cannot do without.
+void require(const Reader& reader, std::string_view key);
 // The selection under `key` of the reader's table, which has to be there.
 Selection parse_selection(const Reader& reader, const std::string& key);
 // The keys path, smooth and pivot.

@@ -180,6 +180,7 @@ SceneBody parse_body(const std::string& name, const DocValue& value) {
   reader.point("position", body.position);
   reader.point("velocity", body.velocity);
   reader.point("spin", body.spin);
+  if (const auto start = reader.word("start")) body.start = *start;
   body.material = parse_material(reader, Material{});
   if (const DocValue* regions = reader.table("region"))
     for (const DocEntry& entry : regions->entries)

@@ -10,13 +10,6 @@ namespace {
 
 constexpr double radians = std::numbers::pi / 180.0;
 
-// A key that a table cannot do without.
-void require(const Reader& reader, std::string_view key) {
-  if (!reader.has(key))
-    throw Error(ErrorKind::input, fmt::format("{} has no '{}'", reader.name(), key),
-                fmt::format("add {} (docs/scene-format.md)", key), reader.where());
-}
-
 Selection::Box parse_box(const DocValue& value, const std::string& name) {
   const Reader reader(value, name, {&key_tables().box});
   require(reader, "min");
@@ -65,6 +58,12 @@ KeyFrame parse_key_frame(const DocValue& value, const std::string& name) {
 }
 
 }  // namespace
+
+void require(const Reader& reader, std::string_view key) {
+  if (!reader.has(key))
+    throw Error(ErrorKind::input, fmt::format("{} has no '{}'", reader.name(), key),
+                fmt::format("add {} (docs/scene-format.md)", key), reader.where());
+}
 
 Vec3 parse_direction(const Reader& reader, std::string_view key, const Vec3& otherwise) {
   Vec3 direction = otherwise;

@@ -76,6 +76,7 @@ struct SceneBody {
   Vec3 position = Vec3::Zero();  // [m]
   Vec3 velocity = Vec3::Zero();  // [m/s]
   Vec3 spin = Vec3::Zero();      // [rad/s]
+  std::string start = "rest";    // the nodes' positions at the start: rest, flat, inverted, random
   Material material;             // of tets that no region covers
   std::vector<SceneRegion> regions;
   Location where;
@@ -122,6 +123,16 @@ struct SceneProbe {
   Location where;
 };
 
+struct SceneObstacle {
+  std::string name;
+  Vec3 center = Vec3::Zero();       // [m]
+  double radius = 0.0;              // [m]
+  std::optional<double> stiffness;  // [N/m3]; absent: from the bodies
+  Path path;                        // of the centre
+  bool pivot_given = false;         // else the centre
+  Location where;
+};
+
 struct SceneGround {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::UnitY();
@@ -137,15 +148,15 @@ struct SceneOutput {
 };
 
 struct Scene {
-  std::string name;       // default: the file's stem
-  std::string title;      // one line
-  std::string look_for;   // a sentence on what to look for
-  double duration = 2.0;  // [s]
+  std::string name;                // default: the file's stem
+  std::string title;               // one line
+  std::string look_for;            // a sentence on what to look for
+  double duration = 2.0;           // [s]
   std::string stepper = "verlet";  // verlet, static
   double tolerance = 1e-6;         // static: residual of a rest state, as a share of the forces
-  std::optional<double> dt;  // [s]; absent: "auto"
-  int substeps = 1;          // the step taken is dt / substeps
-  double safety = 0.9;       // share of the stable step that dt = "auto" takes
+  std::optional<double> dt;        // [s]; absent: "auto"
+  int substeps = 1;                // the step taken is dt / substeps
+  double safety = 0.9;             // share of the stable step that dt = "auto" takes
   bool allow_unstable = false;
   Vec3 gravity = Vec3(0.0, -9.81, 0.0);
   int limit_sweeps = 20;
@@ -157,6 +168,7 @@ struct Scene {
   std::vector<SceneAttachment> attachments;
   std::vector<SceneForce> forces;
   std::vector<SceneProbe> probes;
+  std::vector<SceneObstacle> obstacles;
 
   std::string file;      // the file it came from, for messages
   std::string document;  // the whole scene as TOML with every override in it; parses to this scene

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "sinew/base/parallel.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/volume_law.h"
 
@@ -162,7 +163,7 @@ double guaranteed_step(const Model& model, const Field& x, const Workspace& work
   double highest = 0.0;
   for (Index i = 0; i < model.node_count(); ++i) {
     const auto n = uz(i);
-    double k = rows[n];
+    double k = rows[n] + largest_obstacle_stiffness(model, i);
     double c = model.drag[n] * model.mass[n];
     for (Index e = model.spring_start[n]; e < model.spring_start[n + 1]; ++e) {
       const Index spring = model.node_spring[uz(e)] >> 1;

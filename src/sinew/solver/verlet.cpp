@@ -10,6 +10,7 @@
 #include "sinew/contact/ground.h"
 #include "sinew/forces/limits.h"
 #include "sinew/forces/loads.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/terms.h"
 
 namespace sinew {
@@ -65,6 +66,19 @@ void add_work_of_loads(const Model& model, const Workspace& workspace, double h,
         state.half_velocity[k] + (0.5 * kick * model.inverse_mass[k]) * workspace.force[k];
     state.energy.work_in += kick * force.dot(v);
   });
+}
+
+// Work of the obstacles that follow a path over the step: their forces on the bodies times their
+// own way, with the velocity (c(t + h) - c(t - h_last)) / (h + h_last); called before the move.
+void add_work_of_obstacles(const Model& model, double h, State& state) {
+  bool moves = false;
+  for (const Obstacle& o : model.obstacles) moves = moves || !o.path.keys.empty();
+  if (!moves) return;
+  const std::vector<Vec3> before = obstacle_centers(model, state.time - state.last_step);
+  const std::vector<Vec3> after = obstacle_centers(model, state.time + h);
+  const auto readings = read_obstacles(model, state.position, state.time);
+  for (std::size_t c = 0; c < readings.size(); ++c)
+    state.energy.work_in -= 0.5 * readings[c].force.dot(after[c] - before[c]);
 }
 
 // Projects the limits, with the ground as a constraint among them; velocities follow.
@@ -136,6 +150,7 @@ VerletReport verlet_step(const Model& model, double h, State& state, Workspace& 
   VerletReport report;
   state.energy.dissipated += h * compute_forces(model, state, workspace);
   add_work_of_loads(model, workspace, h, state);
+  add_work_of_obstacles(model, h, state);
   const Index broken = move_free_nodes(model, workspace, h, state);
   move_pins(model, workspace, h, state);
   if (broken == none) {

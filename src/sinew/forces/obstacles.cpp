@@ -1,0 +1,94 @@
+#include "sinew/forces/obstacles.h"
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/loads.h"
+#include "sinew/mesh/surface.h"
+
+namespace sinew {
+namespace {
+
+// Calls f(node) for every free node of the surface, in parallel.
+template <typename F>
+void for_each_surface_node(const Model& model, const F& f) {
+  parallel_for(static_cast<Index>(model.surface_share.size()), [&](Index i) {
+    if (model.surface_share[uz(i)] > 0.0 && model.inverse_mass[uz(i)] > 0.0) f(uz(i));
+  });
+}
+
+}  // namespace
+
+void add_obstacle(Model& model, Obstacle obstacle) {
+  model.obstacles.push_back(std::move(obstacle));
+  if (!model.surface_share.empty()) return;
+  model.surface_share.assign(uz(model.body_node_count()), 0.0);
+  for (const Triangle& t : build_surface(model.tets, model.body_node_count()).triangles) {
+    const double third = area_vector(model.rest_position, t).norm() / 3.0;
+    for (const Index corner : t) model.surface_share[uz(corner)] += third;
+  }
+}
+
+std::vector<Vec3> obstacle_centers(const Model& model, double time) {
+  std::vector<Vec3> centers;
+  for (const Obstacle& o : model.obstacles) centers.push_back(o.path.at(time, o.center));
+  return centers;
+}
+
+double obstacle_energy(const Model& model, std::span<const Vec3> x, double time) {
+  const std::vector<Vec3> centers = obstacle_centers(model, time);
+  return parallel_sum(static_cast<Index>(model.surface_share.size()), [&](Index i) {
+    const auto n = uz(i);
+    double energy = 0.0;
+    for (std::size_t c = 0; c < centers.size() && model.inverse_mass[n] > 0.0; ++c) {
+      const Obstacle& o = model.obstacles[c];
+      energy += obstacle_energy(x[n] - centers[c], o.radius, o.stiffness * model.surface_share[n]);
+    }
+    return energy;
+  });
+}
+
+void add_obstacle_forces(const Model& model, std::span<const Vec3> x, double time,
+                         std::span<Vec3> forces) {
+  const std::vector<Vec3> centers = obstacle_centers(model, time);
+  for_each_surface_node(model, [&](std::size_t n) {
+    for (std::size_t c = 0; c < centers.size(); ++c) {
+      const Obstacle& o = model.obstacles[c];
+      forces[n] += obstacle_push(x[n] - centers[c], o.radius, o.stiffness * model.surface_share[n]);
+    }
+  });
+}
+
+void add_obstacle_stiffness_times(const Model& model, std::span<const Vec3> x,
+                                  std::span<const Vec3> centers, double a, std::span<const Vec3> u,
+                                  bool only_stiffening, std::span<Vec3> out) {
+  for_each_surface_node(model, [&](std::size_t n) {
+    for (std::size_t c = 0; c < centers.size(); ++c) {
+      const Obstacle& o = model.obstacles[c];
+      out[n] +=
+          a * obstacle_stiffness_times(x[n] - centers[c], o.radius,
+                                       o.stiffness * model.surface_share[n], u[n], only_stiffening);
+    }
+  });
+}
+
+std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const Vec3> x,
+                                            double time) {
+  std::vector<ObstacleReading> readings;
+  for (const Obstacle& o : model.obstacles) {
+    ObstacleReading reading;
+    reading.name = o.name;
+    reading.center = o.path.at(time, o.center);
+    for (std::size_t n = 0; n < model.surface_share.size(); ++n) {
+      if (model.surface_share[n] == 0.0 || model.inverse_mass[n] == 0.0) continue;
+      const Vec3 r = x[n] - reading.center;
+      const double depth = o.radius - r.norm();
+      if (depth <= 0.0) continue;
+      reading.force -= obstacle_push(r, o.radius, o.stiffness * model.surface_share[n]);
+      reading.depth = std::max(reading.depth, depth);
+      ++reading.contacts;
+    }
+    readings.push_back(std::move(reading));
+  }
+  return readings;
+}
+
+}  // namespace sinew

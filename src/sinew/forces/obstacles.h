@@ -1,0 +1,85 @@
+// Obstacles: rigid, frictionless spheres that press on the surface of bodies.
+// docs/methods/obstacles.md.
+//
+// A node of the surface at x, with A its share of the surface's area at rest, is pushed out of the
+// sphere of centre c and radius R by a pressure in proportion to its depth:
+//
+//   W = k A/2 max(0, R - |x - c|)^2
+//
+// Only nodes that are free to move are pushed; nothing but nodes is looked at.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "sinew/base/vec.h"
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+// The formula on plain values: r = x - c [m], radius [m], stiffness k A [N/m].
+// A node at the very centre has no way out: no force.
+inline double obstacle_energy(const Vec3& r, double radius, double stiffness) {
+  const double depth = std::max(0.0, radius - r.norm());
+  return 0.5 * stiffness * depth * depth;
+}
+
+// The force on the node, k A (R - |r|) r / |r| [N].
+inline Vec3 obstacle_push(const Vec3& r, double radius, double stiffness) {
+  const double distance = r.norm();
+  if (distance >= radius || distance == 0.0) return Vec3::Zero();
+  return (stiffness * (radius / distance - 1.0)) * r;
+}
+
+// The second derivative of the energy times u: k A [n (n . u) - (R/|r| - 1) (u - n (n . u))]. With
+// `only_stiffening`, without its negative part across n: positive semidefinite.
+inline Vec3 obstacle_stiffness_times(const Vec3& r, double radius, double stiffness, const Vec3& u,
+                                     bool only_stiffening = false) {
+  const double distance = r.norm();
+  if (distance >= radius || distance == 0.0) return Vec3::Zero();
+  const Vec3 along = (r.dot(u) / (distance * distance)) * r;
+  if (only_stiffening) return stiffness * along;
+  return stiffness * (along - (radius / distance - 1.0) * (u - along));
+}
+
+// Adds the obstacle to the model. Call after the last add_body.
+void add_obstacle(Model& model, Obstacle obstacle);
+
+// Where the obstacles' centres are at a time [m] (obstacles).
+std::vector<Vec3> obstacle_centers(const Model& model, double time);
+
+// Sum of W over nodes and obstacles [J].
+double obstacle_energy(const Model& model, std::span<const Vec3> x, double time);
+
+// Adds the obstacles' forces at positions x and `time` to `forces` [N] (nodes).
+void add_obstacle_forces(const Model& model, std::span<const Vec3> x, double time,
+                         std::span<Vec3> forces);
+
+// out += a H u, H the second derivative of W at positions x and with the obstacles at `centers`.
+void add_obstacle_stiffness_times(const Model& model, std::span<const Vec3> x,
+                                  std::span<const Vec3> centers, double a, std::span<const Vec3> u,
+                                  bool only_stiffening, std::span<Vec3> out);
+
+// The most that obstacles can stiffen a node of the surface, sum of k A [N/m]; elsewhere 0. A step
+// that is stable with it is stable whichever nodes the obstacles come to touch.
+inline double largest_obstacle_stiffness(const Model& model, Index node) {
+  if (uz(node) >= model.surface_share.size()) return 0.0;
+  double sum = 0.0;
+  for (const Obstacle& o : model.obstacles) sum += o.stiffness * model.surface_share[uz(node)];
+  return sum;
+}
+
+// What an obstacle and the bodies do to each other.
+struct ObstacleReading {
+  std::string name;
+  Vec3 center = Vec3::Zero();  // [m]
+  Vec3 force = Vec3::Zero();   // of the bodies on the obstacle [N]
+  double depth = 0.0;          // of the deepest node [m]
+  Index contacts = 0;          // nodes that it pushes
+};
+std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const Vec3> x,
+                                            double time);
+
+}  // namespace sinew
