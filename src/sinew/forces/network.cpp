@@ -107,9 +107,10 @@ void add_network(Model& model, const TetMesh& mesh, const std::vector<Material>&
   std::vector<Entry> entries;
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     const Material& m = materials[static_cast<std::size_t>(region_of(t))];
-    if (!in_network(m) || m.beta == 0.0) continue;
+    const double beta = network_beta(m);
+    if (!in_network(m) || beta == 0.0) continue;
     const double weight =
-        m.beta * shear_modulus(m.young, m.poisson) * signed_volume(mesh.nodes, mesh.tets[uz(t)]);
+        beta * shear_modulus(m.young, m.poisson) * signed_volume(mesh.nodes, mesh.tets[uz(t)]);
     add_cell(mesh.tets[uz(t)], gradients[uz(t)], weight, mesh.node_count(), entries);
   }
   const EdgeTable table = build_edges(mesh.tets, mesh.node_count());
@@ -125,12 +126,13 @@ void add_network(Model& model, const TetMesh& mesh, const std::vector<Material>&
     }
     for (const int r : regions) {
       const Material& m = materials[static_cast<std::size_t>(r)];
-      if (!in_network(m) || m.beta == 1.0) continue;
+      const double beta = network_beta(m);
+      if (!in_network(m) || beta == 1.0) continue;
       cell.start();
       for (const Index t : around) {
         if (region_of(t) == r) cell.add(t);
       }
-      cell.finish((1.0 - m.beta) * shear_modulus(m.young, m.poisson), entries);
+      cell.finish((1.0 - beta) * shear_modulus(m.young, m.poisson), entries);
     }
   }
   merge(entries);

@@ -12,6 +12,7 @@
 #include "sinew/forces/laws.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
+#include "sinew/identify/calibrate.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/surface.h"
 #include "sinew/scene/place.h"
@@ -115,6 +116,12 @@ std::vector<PlacedBody> add_bodies(const Scene& scene, Model& model, BuildReport
     spec.velocity = body.velocity;
     spec.spin = body.spin;
     assign_regions(placed, spec);
+    try {
+      calibrate_materials(spec);
+    } catch (const Error& error) {
+      throw Error(error.kind(), fmt::format("[body.{}]: {}", body.name, error.message()),
+                  error.remedy(), body.where);
+    }
     add_body(model, spec);
     check_finite(model, body);
     if (report != nullptr)

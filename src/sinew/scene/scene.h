@@ -69,6 +69,7 @@ struct SceneBody {
   double inner_radius = 0.025;            // hollow_sphere [m]
   double height = 0.2;                    // cylinder, along z [m]
   int resolution = 4;                     // round shapes: shells
+  int refine = 0;                         // times that every tet is cut into eight
   // Placement: x = position + R(rotation) (scale (X - origin))
   double scale = 1.0;   // metres per mesh unit
   bool center = false;  // origin: the mesh's centroid (by volume)

@@ -16,18 +16,16 @@ struct ScalarPreconditioner::Factors {
   Eigen::VectorXd inverse_diagonal;
   Eigen::SimplicialLDLT<Matrix> direct;
   bool factored = false;
+  bool held = false;  // false: no node's motion is given, and constants are in the null space
 
-  Eigen::MatrixX3d solve(const Eigen::MatrixX3d& rhs) const {
-    if (factored) return direct.solve(rhs);
-    return inverse_diagonal.asDiagonal() * rhs;
+  Eigen::MatrixX3d solve(Eigen::MatrixX3d rhs) const {
+    if (!held) rhs.rowwise() -= rhs.colwise().mean();
+    Eigen::MatrixX3d out = inverse_diagonal.asDiagonal() * rhs;
+    if (factored) out = direct.solve(rhs);
+    if (!held) out.rowwise() -= out.colwise().mean();
+    return out;
   }
 };
-
-namespace {
-
-using Triplets = std::vector<Eigen::Triplet<double>>;
-
-}  // namespace
 
 ScalarPreconditioner::ScalarPreconditioner(const Model& model, Index direct_limit)
     : factors_(std::make_unique<Factors>()) {
@@ -38,6 +36,8 @@ ScalarPreconditioner::ScalarPreconditioner(const Model& model, Index direct_limi
     f.row[uz(i)] = static_cast<Index>(f.free.size());
     f.free.push_back(i);
   }
+  f.held = f.free.size() < f.row.size();
+  using Triplets = std::vector<Eigen::Triplet<double>>;
   Triplets entries;
   const auto add = [&](Index i, Index j, double k) {  // k (u_i - u_j) in the rows of i and j
     if (f.row[uz(i)] >= 0) {
