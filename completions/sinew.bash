@@ -20,7 +20,7 @@ _sinew() {
   local meshes=(mesh msh vtk vtu node ele)
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    _sinew_words "run resume info convert materials completion --help --version"
+    _sinew_words "run resume info convert identify materials completion --help --version"
     return
   fi
   case ${COMP_WORDS[1]}:$previous in
@@ -33,6 +33,11 @@ _sinew() {
       _sinew_words "gmsh41 gmsh41-binary gmsh22 gmsh22-binary ascii binary zlib base64"
       return
       ;;
+    identify:--law)
+      _sinew_words "all neo-hookean linear-fem calibrated lloyd vangelder"
+      return
+      ;;
+    identify:--young | identify:--poisson | identify:--density | identify:--damping-ratio) return ;;
     *:--threads | *:--set | *:--scale) return ;;
   esac
   case ${COMP_WORDS[1]}:$cur in
@@ -42,7 +47,8 @@ _sinew() {
     convert:-*) _sinew_words "--scale --repair --format --force --help" ;;
     run:*) _sinew_files toml ;;
     resume:*) _sinew_files ;;
-    info:* | convert:*) _sinew_files "${meshes[@]}" ;;
+    identify:-*) _sinew_words "--young --poisson --law --density --damping-ratio --scale --html --json -q --quiet --help" ;;
+    info:* | convert:* | identify:*) _sinew_files "${meshes[@]}" ;;
     materials:-*) _sinew_words "--json --help" ;;
     materials:*) _sinew_words "artery brain breast fat heart kidney ligament liver muscle silicone-gel skin tendon" ;;
     completion:*) _sinew_words "bash zsh fish --help" ;;

@@ -9,6 +9,7 @@ complete -c sinew -n __fish_use_subcommand -a run -d 'Run a scene into a folder'
 complete -c sinew -n __fish_use_subcommand -a resume -d 'Go on with a run from its checkpoint'
 complete -c sinew -n __fish_use_subcommand -a info -d 'Examine a mesh'
 complete -c sinew -n __fish_use_subcommand -a convert -d 'Convert between mesh formats'
+complete -c sinew -n __fish_use_subcommand -a identify -d 'Measure what each law makes of a material on a mesh'
 complete -c sinew -n __fish_use_subcommand -a materials -d 'Show the tissue library'
 complete -c sinew -n __fish_use_subcommand -a completion -d 'Print a shell completion'
 
@@ -25,11 +26,21 @@ complete -c sinew -n $running -s q -l quiet -d 'Print errors only'
 complete -c sinew -n $running -l threads -x -d 'Threads to use'
 complete -c sinew -n '__fish_seen_subcommand_from resume' -a '(__fish_complete_directories)'
 
-set -l meshes '__fish_seen_subcommand_from info convert'
+set -l meshes '__fish_seen_subcommand_from info convert identify'
 for suffix in .mesh .msh .vtk .vtu .node .ele
     complete -c sinew -n $meshes -a "(__fish_complete_suffix $suffix)"
 end
 complete -c sinew -n $meshes -l scale -x -d 'Factor for the coordinates: 0.001 for mm'
+set -l identify '__fish_seen_subcommand_from identify'
+complete -c sinew -n $identify -l young -x -d 'Young\'s modulus asked for [Pa]'
+complete -c sinew -n $identify -l poisson -x -d 'Poisson\'s ratio asked for'
+complete -c sinew -n $identify -l law -x -d 'Law to measure' \
+    -a 'all neo-hookean linear-fem calibrated lloyd vangelder'
+complete -c sinew -n $identify -l density -x -d 'Density [kg/m3]'
+complete -c sinew -n $identify -l damping-ratio -x -d 'Damping ratio of springs'
+complete -c sinew -n $identify -l html -r -d 'Write a page with tables and plots'
+complete -c sinew -n $identify -l json -d 'Print JSON'
+complete -c sinew -n $identify -s q -l quiet -d 'No progress'
 set -l convert '__fish_seen_subcommand_from convert'
 complete -c sinew -n $convert -l repair -d 'Turn inverted tets, drop unreferenced nodes'
 complete -c sinew -n $convert -l format -x -d 'Variant of the format' \
@@ -39,5 +50,5 @@ complete -c sinew -n '__fish_seen_subcommand_from info materials' -l json -d 'Pr
 complete -c sinew -n '__fish_seen_subcommand_from materials' \
     -a 'artery brain breast fat heart kidney ligament liver muscle silicone-gel skin tendon'
 complete -c sinew -n '__fish_seen_subcommand_from completion' -a 'bash zsh fish'
-set -l any '__fish_seen_subcommand_from run resume info convert materials completion'
+set -l any '__fish_seen_subcommand_from run resume info convert identify materials completion'
 complete -c sinew -n $any -l help -d 'Show help'

@@ -13,6 +13,7 @@ _sinew() {
         'resume:Go on with a run from its last checkpoint'
         'info:Examine a mesh'
         'convert:Convert between mesh formats'
+        'identify:Measure what each law makes of a material on a mesh'
         'materials:Show the tissue library'
         'completion:Print a shell completion'
       )
@@ -48,6 +49,17 @@ _sinew() {
             '--format[Variant of the format]:variant:(gmsh41 gmsh41-binary gmsh22 gmsh22-binary ascii binary zlib base64)' \
             '--force[Replace existing files]' '--help[Show help]' \
             '1:mesh:_files -g "$meshes"' '2:mesh:_files -g "$meshes"'
+          ;;
+        identify)
+          _arguments '--young[Young modulus asked for, Pa]:young:' \
+            '--poisson[Poisson ratio asked for]:poisson:' \
+            '--law[Law to measure]:law:(all neo-hookean linear-fem calibrated lloyd vangelder)' \
+            '--density[Density, kg/m3]:density:' \
+            '--damping-ratio[Damping ratio of springs]:ratio:' \
+            '--scale[Factor from the unit of the file to metres]:factor:' \
+            '--html[Write a page with tables and plots]:file:_files' \
+            '--json[Print JSON]' '(-q --quiet)'{-q,--quiet}'[No progress]' \
+            '--help[Show help]' '1:mesh:_files -g "$meshes"'
           ;;
         materials)
           _arguments '--json[Print JSON]' '--help[Show help]' \
