@@ -67,6 +67,7 @@ void parse_source(const Reader& reader, SceneBody& body) {
   reader.point("radii", body.radii);
   reader.number("height", body.height);
   reader.integer("resolution", body.resolution);
+  reader.integer("refine", body.refine);
   refuse_shape_keys_that_do_not_fit(reader, body);
 }
 

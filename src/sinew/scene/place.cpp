@@ -9,6 +9,7 @@
 #include "sinew/mesh/doctor.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/size.h"
+#include "sinew/mesh/subdivide.h"
 #include "sinew/scene/keys.h"
 
 namespace sinew {
@@ -84,6 +85,18 @@ void make_sound(PlacedBody& placed) {
     placed.node_of_file[static_cast<std::size_t>(report.original_node[i])] = static_cast<Index>(i);
 }
 
+// The nodes of the file keep their ids.
+void refine(PlacedBody& placed) {
+  const SceneBody& body = *placed.body;
+  const auto tets = static_cast<std::int64_t>(placed.mesh.tet_count()) << (3 * body.refine);
+  if (tets > kMaxShapeTets)
+    throw Error(ErrorKind::input,
+                fmt::format("refine = {} would give [body.{}] {} tets, more than {}", body.refine,
+                            body.name, tets, kMaxShapeTets),
+                "refine it fewer times", body.mesh_where);
+  for (int level = 0; level < body.refine; ++level) placed.mesh = subdivide(placed.mesh);
+}
+
 // Of the volume, in the mesh's unit.
 Vec3 centroid(const TetMesh& mesh) {
   Vec3 moment = Vec3::Zero();
@@ -142,6 +155,7 @@ PlacedBody place(const Scene& scene, const SceneBody& body) {
     placed.mesh = make_shape(body);
   }
   make_sound(placed);
+  refine(placed);
   move_to_world(placed);
   const double volume = checked_volume(placed);
   if (const auto warning = size_warning(volume, placed.high - placed.low, body.scale))
