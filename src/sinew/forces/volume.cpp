@@ -10,9 +10,9 @@
 namespace sinew {
 namespace {
 
-// Stiffness of the guard [Pa]: ten times that of the volume of the tet's surroundings, which is what
-// turns it over. (W(4), E = 15 kPa, nu = 0.3: the smallest v/V at rest is 0.15, and 8 of the 1,280
-// tets are inverted without it; the tip moves by 0.15 % less.)
+// Stiffness of the guard [Pa]: ten times that of the volume of the tet's surroundings, which is
+// what turns it over. (W(4), E = 15 kPa, nu = 0.3: the smallest v/V at rest is 0.15, and 8 of the
+// 1,280 tets are inverted without it; the tip moves by 0.15 % less.)
 double guard_stiffness(const Model& model, std::size_t t) {
   double bulk = model.tet_shear[t];
   for (std::size_t a = 0; a < 4; ++a) {
@@ -38,7 +38,7 @@ void compute_cell_pressures(const Model& model, Workspace& workspace) {
   });
 }
 
-double mean_of_cells(const Model& model, std::size_t t, const std::vector<double>& of_cell) {
+double mean_of_cells(const Model& model, std::size_t t, std::span<const double> of_cell) {
   double sum = 0.0;
   for (std::size_t a = 0; a < 4; ++a) {
     const Index c = model.cells[t][a];
@@ -103,13 +103,14 @@ void add_volume_terms(Model& model, const Body& body, const std::vector<Material
     const Volume kept = volume_cells(m);
     const double bulk = volume_stiffness(m);
     if (kept == Volume::tet) model.tet_bulk[t] = bulk;
-    if (kept != Volume::node) continue;
+    if (kept != Volume::node && m.volume_limit == no_limit) continue;
     for (std::size_t a = 0; a < 4; ++a) {
       const auto [entry, added] =
           cell_of.try_emplace({model.tets[t][a], region}, model.cell_count());
       if (added) {
         model.cell_volume.push_back(0.0);
-        model.cell_bulk.push_back(bulk);
+        model.cell_bulk.push_back(kept == Volume::node ? bulk : 0.0);
+        model.volume_limit.push_back(m.volume_limit);
       }
       model.cells[t][a] = entry->second;
       model.cell_volume[uz(entry->second)] += 0.25 * model.rest_volume[t];
@@ -120,6 +121,9 @@ void add_volume_terms(Model& model, const Body& body, const std::vector<Material
 
 void finish_volume_terms(Model& model) {
   model.has_volume = !model.cell_volume.empty();
+  for (const double limit : model.volume_limit) {
+    model.has_volume_limit = model.has_volume_limit || limit < no_limit;
+  }
   for (std::size_t t = 0; t < model.tets.size(); ++t) {
     model.has_volume = model.has_volume || model.tet_shear[t] > 0.0 || model.tet_bulk[t] > 0.0;
   }
@@ -256,6 +260,45 @@ void relax_volume(const Model& model, std::span<const Vec3> x, std::span<const V
     const double pressure = mean_of_cells(model, t, workspace.cell_rate) +
                             series(model.tet_bulk[t], model.tet_modulus[t]) *
                                 workspace.tet_rate[t] / model.rest_volume[t];
+    const Vec3& x0 = x[uz(tet[0])];
+    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
+    for (std::size_t c = 0; c < 4; ++c) workspace.tet_force[4 * t + c] = pressure * g[c];
+  });
+}
+
+namespace {
+
+// Sum over the cell's tets of its share of what `of_tet` holds.
+double sum_of_cell(const Model& model, std::size_t c, const std::vector<double>& of_tet) {
+  double sum = 0.0;
+  for (Index k = model.cell_start[c]; k < model.cell_start[c + 1]; ++k) {
+    sum += model.cell_weight[uz(k)] * of_tet[uz(model.cell_tet[uz(k)])];
+  }
+  return sum;
+}
+
+}  // namespace
+
+void sum_cells(const Model& model, std::span<const Vec3> x, Workspace& workspace,
+               std::span<double> volume) {
+  compute_tet_volumes(model, x, workspace);
+  parallel_for(model.cell_count(),
+               [&](Index c) { volume[uz(c)] = sum_of_cell(model, uz(c), workspace.tet_volume); });
+}
+
+void rate_cells(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
+                Workspace& workspace, std::span<double> rate) {
+  compute_tet_rates(model, x, u, workspace);
+  parallel_for(model.cell_count(),
+               [&](Index c) { rate[uz(c)] = sum_of_cell(model, uz(c), workspace.tet_rate); });
+}
+
+void press_cells(const Model& model, std::span<const Vec3> x, std::span<const double> weight,
+                 Workspace& workspace) {
+  parallel_for(model.tet_count(), [&](Index i) {
+    const auto t = uz(i);
+    const Tet& tet = model.tets[t];
+    const double pressure = mean_of_cells(model, t, weight);
     const Vec3& x0 = x[uz(tet[0])];
     const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
     for (std::size_t c = 0; c < 4; ++c) workspace.tet_force[4 * t + c] = pressure * g[c];

@@ -42,6 +42,18 @@ void compute_volume_force_change(const Model& model, std::span<const Vec3> x, do
 void relax_volume(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
                   Workspace& workspace);
 
+// --- the pieces of a projection on the cells' volumes (volume_limit.h) ---
+
+// volume = current volume of every cell [m3] (cells).
+void sum_cells(const Model& model, std::span<const Vec3> x, Workspace& workspace,
+               std::span<double> volume);
+// rate = what u changes those volumes by, to first order [m3] (cells).
+void rate_cells(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
+                Workspace& workspace, std::span<double> rate);
+// Fills workspace.tet_force with the gradient of sum_c weight_c V_c(x).
+void press_cells(const Model& model, std::span<const Vec3> x, std::span<const double> weight,
+                 Workspace& workspace);
+
 // Sum, for a node in the fixed order of its tets, of what workspace.tet_force holds.
 inline Vec3 gather_tets(const Model& model, const Workspace& workspace, Index node) {
   Vec3 sum = Vec3::Zero();

@@ -54,6 +54,7 @@ struct Material {
                                      // gradients; negative: from poisson
   Volume volume = Volume::by_law;
   double volume_stiffness = -1.0;  // kappa [Pa] of the cells; negative: from young and poisson
+  double volume_limit = no_limit;  // [-] > 0: most |J - 1| of a node cell after a step
   double spring_scale = 1.0;       // [-] > 0 on the stiffness of lloyd's, vangelder's springs
 };
 

@@ -49,6 +49,7 @@ std::uint64_t Model::hash() const {
   h.array(cells);
   h.array(cell_share);
   h.array(cell_bulk);
+  h.array(volume_limit);
   h.array(limited);
   h.array(colour_start);
   h.value(limit_sweeps);

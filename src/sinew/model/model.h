@@ -112,12 +112,14 @@ struct Model {
   std::vector<std::array<double, 4>> cell_share;  // share of the tet in that cell [-] (tets)
   std::vector<double> cell_volume;                // V_c = sum of its tets' shares of V [m3] (cells)
   std::vector<double> cell_bulk;                  // kappa_c [Pa] (cells)
-  std::vector<Index> cell_start;                  // offsets into cell_tet (cells + 1)
-  std::vector<Index> cell_tet;                    // tet ids, increasing in each cell
-  std::vector<double> cell_weight;                // the cell's share of that tet [-] (as cell_tet)
-  std::vector<Index> tet_start;                   // offsets into node_tet (nodes + 1)
-  std::vector<Index> node_tet;                    // 4 t + corner: the node is that corner of tet t
-  bool has_volume = false;                        // false: nothing above acts
+  std::vector<double> volume_limit;  // most |J_c - 1| after a step [-] (cells), infinity: any
+  bool has_volume_limit = false;     // false: every one is infinite
+  std::vector<Index> cell_start;     // offsets into cell_tet (cells + 1)
+  std::vector<Index> cell_tet;       // tet ids, increasing in each cell
+  std::vector<double> cell_weight;   // the cell's share of that tet [-] (as cell_tet)
+  std::vector<Index> tet_start;      // offsets into node_tet (nodes + 1)
+  std::vector<Index> node_tet;       // 4 t + corner: the node is that corner of tet t
+  bool has_volume = false;           // false: nothing above acts
 
   // --- limited springs grouped so that no two of a colour share a node ---
   std::vector<Index> limited;       // spring ids, colour by colour

@@ -148,7 +148,7 @@ bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
     --run.steps_to_watch;
     run.contacts = report.contacts;
     run.limit_sweeps += report.limit_sweeps;
-    run.unmet_limits += report.limits_met ? 0 : 1;
+    run.unmet_limits += report.limits_met && report.volume_met ? 0 : 1;
     if (run.steps_left > 0 && stop != nullptr && stop->load()) return false;
   }
   ++run.frame;

@@ -119,6 +119,7 @@ KeyTables make_tables() {
           number("compress_limit", "", "inf", {0.0, 1.0, true, false, true}),
           number("beta", "", "the law's choice", from_to(0, 1)),
           word("volume", "the law's choice", "none tet node"),
+          number("volume_limit", "", "inf", positive_or_none),
           number("volume_stiffness", "Pa", "the one of young and poisson", not_negative),
       }};
   t.region = {"region",

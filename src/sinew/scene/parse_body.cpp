@@ -152,6 +152,7 @@ Material parse_material(const Reader& reader, const Material& base) {
   if (const auto volume = reader.word("volume"))
     m.volume = *volume == "none" ? Volume::none : *volume == "tet" ? Volume::tet : Volume::node;
   reader.number("volume_stiffness", m.volume_stiffness);
+  reader.number("volume_limit", m.volume_limit);
   reader.number("density", m.density);
   reader.number("young", m.young);
   reader.number("poisson", m.poisson);

@@ -12,6 +12,7 @@
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/terms.h"
+#include "sinew/forces/volume_limit.h"
 
 namespace sinew {
 namespace {
@@ -81,6 +82,23 @@ void add_work_of_obstacles(const Model& model, double h, State& state) {
     state.energy.work_in -= 0.5 * readings[c].force.dot(after[c] - before[c]);
 }
 
+// Lets the velocities follow positions that constraints have moved, and counts what that takes. The
+// impulses work on the mean of the velocities before and after the step, as in Verlet's own
+// balance: none where a taut spring just holds.
+void follow_positions(const Model& model, const Workspace& workspace,
+                      const std::vector<Vec3>& predicted, double h, State& state) {
+  const double kick = 0.5 * (state.last_step + h);
+  state.energy.dissipated -= parallel_sum(model.node_count(), [&](Index i) {
+    const auto k = uz(i);
+    if (model.inverse_mass[k] == 0.0) return 0.0;
+    const Vec3 change = (state.position[k] - predicted[k]) / h;
+    const Vec3 before =
+        state.half_velocity[k] - (kick * model.inverse_mass[k]) * workspace.force[k];
+    state.half_velocity[k] += change;
+    return 0.5 * model.mass[k] * change.dot(before + state.half_velocity[k]);
+  });
+}
+
 // Projects the limits, with the ground as a constraint among them; velocities follow.
 void enforce_limits(const Model& model, const Workspace& workspace, double h, State& state,
                     VerletReport& report) {
@@ -97,18 +115,16 @@ void enforce_limits(const Model& model, const Workspace& workspace, double h, St
   report.limits_met =
       moved == 0 || measure_limit_violation(model, state.position) <= model.limit_tolerance;
 
-  // The limits' impulses work on the mean of the velocities before and after the step, as in
-  // Verlet's own balance: none where a taut spring just holds.
-  const double kick = 0.5 * (state.last_step + h);
-  state.energy.dissipated -= parallel_sum(model.node_count(), [&](Index i) {
-    const auto k = uz(i);
-    if (model.inverse_mass[k] == 0.0) return 0.0;
-    const Vec3 change = (state.position[k] - predicted[k]) / h;
-    const Vec3 before =
-        state.half_velocity[k] - (kick * model.inverse_mass[k]) * workspace.force[k];
-    state.half_velocity[k] += change;
-    return 0.5 * model.mass[k] * change.dot(before + state.half_velocity[k]);
-  });
+  follow_positions(model, workspace, predicted, h, state);
+}
+
+// Projects the limited cells back to their volume; velocities follow.
+void enforce_volume(const Model& model, double h, Workspace& workspace, State& state,
+                    VerletReport& report) {
+  const std::vector<Vec3> predicted = state.position;
+  const VolumeLimitReport volume = enforce_volume_limit(model, state.position, workspace);
+  report.volume_met = volume.met;
+  if (volume.projections > 0) follow_positions(model, workspace, predicted, h, state);
 }
 
 // The spring at the node that pulled hardest for its stiffness, or that is itself not finite.
@@ -160,6 +176,7 @@ VerletReport verlet_step(const Model& model, double h, State& state, Workspace& 
       state.energy.dissipated += ground.dissipated;
     }
     if (!model.limited.empty()) enforce_limits(model, workspace, h, state, report);
+    if (model.has_volume_limit) enforce_volume(model, h, workspace, state, report);
   }
   state.last_step = h;
   state.time += h;

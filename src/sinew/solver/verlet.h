@@ -10,6 +10,7 @@ struct VerletReport {
   Index contacts = 0;      // nodes that touched the ground
   int limit_sweeps = 0;    // sweeps that moved a spring
   bool limits_met = true;  // false: springs still over their limit after the last sweep
+  bool volume_met = true;  // false: cells still over their volume limit after the projections
 };
 
 // Advances the state by h [s] > 0.
