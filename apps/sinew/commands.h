@@ -9,4 +9,7 @@ void add_resume(CLI::App& app, int& status);
 void add_info(CLI::App& app);
 void add_convert(CLI::App& app);
 void add_materials(CLI::App& app);
+void add_identify(CLI::App& app);
+void add_validate(CLI::App& app, int& status);
+void add_converge(CLI::App& app, int& status);
 void add_completion(CLI::App& app);

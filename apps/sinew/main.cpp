@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* footer = R"(Exit codes:
   0 done   2 wrong usage   3 unusable input   4 unstable step   5 diverged   6 file system
-  1 a fault of Sinew itself   130 interrupted, to be resumed
+  1 a fault of Sinew itself   7 a threshold of 'sinew validate' missed   130 interrupted
 
 Examples:
   sinew run scenes/liver.toml
@@ -34,6 +34,9 @@ int main(int argc, char** argv) {
   add_info(app);
   add_convert(app);
   add_materials(app);
+  add_identify(app);
+  add_validate(app, status);
+  add_converge(app, status);
   add_completion(app);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,171 @@
+#include "sinew/study/measure.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <numbers>
+
+#include "sinew/forces/terms.h"
+#include "sinew/mesh/tet_mesh.h"
+#include "sinew/scene/build.h"
+#include "sinew/scene/keys.h"
+#include "sinew/solver/modes.h"
+
+namespace sinew::study {
+
+namespace {
+
+int axis_of(char letter) {
+  return letter - 'x';
+}
+
+// The probe or pin of a quantity.
+template <typename Part>
+const Part& named(const std::vector<Part>& parts, const Quantity& q, const char* what) {
+  std::vector<std::string> known;
+  for (const Part& part : parts) {
+    if (part.name == q.of) return part;
+    known.push_back(part.name);
+  }
+  throw Error(ErrorKind::input,
+              fmt::format("scene.toml has no {} '{}'{}", what, q.of, did_you_mean(q.of, known)),
+              fmt::format("the quantity '{}' is measured there", q.name), q.where);
+}
+
+}  // namespace
+
+Experiment::Experiment(const Scene& scene) : scene_(scene), model_(build_model(scene)) {
+  run_.state = initial_state(model_);
+  lowest_.assign(model_.probes.size(), Vec3::Zero());
+}
+
+bool Experiment::run(const std::atomic<bool>* stop, const std::function<void(double)>& on_share) {
+  const auto start = std::chrono::steady_clock::now();
+  Stepping stepping(scene_, model_, run_);
+  while (run_.frame < stepping.frame_count()) {
+    const double before = run_.state.time;
+    if (!stepping.advance_frame(run_, stop)) return false;
+    const std::vector<ProbeReading> readings = probes();
+    for (std::size_t p = 0; p < readings.size(); ++p)
+      lowest_[p] = lowest_[p].cwiseMin(readings[p].displacement);
+    if (run_.contacts > 0) contact_time_ += run_.state.time - before;
+    if (on_share) on_share(run_.state.time / scene_.duration);
+    if (stop != nullptr && stop->load() && run_.frame < stepping.frame_count()) return false;
+  }
+  compute_forces(model_, run_.state, stepping.workspace());
+  force_ = stepping.workspace().force;
+  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return true;
+}
+
+Index Experiment::inverted_tets() const {
+  return static_cast<Index>(
+      std::count_if(model_.tets.begin(), model_.tets.end(),
+                    [&](const Tet& t) { return signed_volume(run_.state.position, t) <= 0.0; }));
+}
+
+double Experiment::volume_ratio() const {
+  double rest = 0.0, now = 0.0;
+  for (const Body& body : model_.bodies) {
+    rest += body.rest_volume;
+    now += body.rest_volume * sinew::volume_ratio(model_, body, run_.state.position);
+  }
+  return now / rest;
+}
+
+// The pin balances what the material pulls: compute_forces leaves just that on pinned nodes.
+Vec3 Experiment::pin_force(const Pin& pin) const {
+  Vec3 sum = Vec3::Zero();
+  for (const Index i : pin.nodes) sum -= force_[uz(i)];
+  return sum;
+}
+
+Vec3 Experiment::pin_torque(const Pin& pin) const {
+  const std::vector<Vec3>& x = run_.state.position;
+  Vec3 centre = Vec3::Zero();
+  for (const Index i : pin.nodes) centre += x[uz(i)] / static_cast<double>(pin.nodes.size());
+  Vec3 sum = Vec3::Zero();
+  for (const Index i : pin.nodes) sum -= (x[uz(i)] - centre).cross(force_[uz(i)]);
+  return sum;
+}
+
+// Mean of P over the body: the divergence theorem on P N = forces of the pins, where nothing else
+// acts from outside.
+double Experiment::stress(int row, int column) const {
+  double volume = 0.0;
+  for (const Body& body : model_.bodies) volume += body.rest_volume;
+  double sum = 0.0;
+  for (const Pin& pin : model_.pins)
+    for (const Index i : pin.nodes) sum -= force_[uz(i)][row] * model_.rest_position[uz(i)][column];
+  return sum / volume;
+}
+
+double Experiment::distance_from_path(const Pin& pin) const {
+  double farthest = 0.0, largest_move = 0.0;
+  for (Index i = 0; i < model_.body_node_count(); ++i) {
+    const Vec3& X = model_.rest_position[uz(i)];
+    const Vec3 goal = pin.path.at(run_.state.time, X);
+    farthest = std::max(farthest, (run_.state.position[uz(i)] - goal).norm());
+    largest_move = std::max(largest_move, (goal - X).norm());
+  }
+  return farthest / largest_move;
+}
+
+// Modes are counted among those that move more of the mass along `axis` than along the others; an
+// empty axis counts all.
+double Experiment::frequency(int mode, const std::string& axis) {
+  for (int wanted = std::max(6, mode); wanted <= 48; wanted *= 2) {
+    if (static_cast<int>(omega_.size()) < wanted) {
+      const Modes modes = lowest_modes(model_, model_.rest_position, wanted);
+      omega_ = modes.omega;
+      participation_ = modes.participation;
+    }
+    int found = 0;
+    for (std::size_t k = 0; k < omega_.size(); ++k) {
+      Eigen::Index along = 0;
+      participation_[k].maxCoeff(&along);
+      const bool counts =
+          axis.empty() || (along == axis_of(axis[0]) && participation_[k][along] > 0.1);
+      if (counts && ++found == mode) return omega_[k] / (2.0 * std::numbers::pi);
+    }
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+double Experiment::measure(const Quantity& q) {
+  const int axis = q.axis.empty() ? 0 : axis_of(q.axis[0]);
+  switch (q.kind) {
+    case Kind::probe:
+    case Kind::lowest: {
+      const Probe& probe = named(model_.probes, q, "probe");
+      const auto p = static_cast<std::size_t>(&probe - model_.probes.data());
+      return q.kind == Kind::lowest ? lowest_[p][axis] : probes()[p].displacement[axis];
+    }
+    case Kind::radial: {
+      const Probe& probe = named(model_.probes, q, "probe");
+      double sum = 0.0;
+      for (const Index i : probe.nodes)
+        sum += run_.state.position[uz(i)].norm() - model_.rest_position[uz(i)].norm();
+      return sum / static_cast<double>(probe.nodes.size());
+    }
+    case Kind::force:
+      return pin_force(named(model_.pins, q, "pin"))[axis];
+    case Kind::torque:
+      return pin_torque(named(model_.pins, q, "pin"))[axis];
+    case Kind::stress:
+      return stress(axis, axis_of(q.axis[1]));
+    case Kind::patch:
+      return distance_from_path(named(model_.pins, q, "pin"));
+    case Kind::frequency:
+      return frequency(q.mode, q.axis);
+    case Kind::volume:
+      return volume_ratio();
+    case Kind::contact_time:
+      return contact_time_;
+  }
+  return 0.0;
+}
+
+}  // namespace sinew::study

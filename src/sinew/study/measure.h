@@ -1,0 +1,54 @@
+// One computation of a study: a scene brought to rest, or run to its end, and what is measured.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "sinew/model/model.h"
+#include "sinew/run/stepping.h"
+#include "sinew/run/summary.h"
+#include "sinew/scene/scene.h"
+#include "sinew/study/case.h"
+
+namespace sinew::study {
+
+class Experiment {
+ public:
+  // Builds the scene's model; the scene has to outlive the experiment. Throws Error(input).
+  explicit Experiment(const Scene& scene);
+
+  // Runs to the end. False: `stop` was set before. Throws Error, see Stepping.
+  bool run(const std::atomic<bool>* stop, const std::function<void(double)>& on_share = {});
+
+  // After run(). Throws Error(input) where the scene has no probe or pin of the name.
+  double measure(const Quantity& quantity);
+
+  const Model& model() const { return model_; }
+  const RunState& state() const { return run_; }
+  std::vector<ProbeReading> probes() const { return read_probes(model_, run_.state.position); }
+  double seconds() const { return seconds_; }  // of run()
+  Index inverted_tets() const;
+  double volume_ratio() const;  // of all bodies
+
+ private:
+  Vec3 pin_force(const Pin& pin) const;
+  Vec3 pin_torque(const Pin& pin) const;
+  double stress(int row, int column) const;
+  double distance_from_path(const Pin& pin) const;
+  double frequency(int mode, const std::string& axis);
+
+  const Scene& scene_;
+  Model model_;
+  RunState run_;
+  std::vector<Vec3> force_;  // total at the end [N] (nodes)
+  double seconds_ = 0.0;
+  std::vector<Vec3> lowest_;  // smallest displacement over the frames [m] (probes)
+  double contact_time_ = 0.0;
+  std::vector<double> omega_;        // [rad/s] of the modes found
+  std::vector<Vec3> participation_;  // how much of the mass a mode moves along each axis [-]
+};
+
+}  // namespace sinew::study
