@@ -16,11 +16,12 @@ namespace {
 const std::string golden_file = SINEW_SOURCE_DIR "/tests/golden/hashes.txt";
 
 // Scene (a file in scenes/) and how long of it; together they use every law, limits, ground,
-// moving pins, loads, attachments, several bodies, regions, fixed and automatic steps.
+// moving pins, loads, obstacles, attachments, several bodies, regions, fixed and automatic steps.
 const std::map<std::string, double> golden_scenes = {{"beam", 0.5},
                                                      {"drop", 0.6},
                                                      {"ligament", 0.3},
                                                      {"liver", 0.2},
+                                                     {"press", 0.3},
                                                      {"pull", 0.5},
                                                      {"talk-good-constants", 0.3},
                                                      {"talk-tissue-limits", 0.4},
@@ -59,7 +60,7 @@ TEST_P(Golden, SameBitsAsRecordedAtOneAndTwoThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Golden,
-                         testing::Values("beam", "drop", "ligament", "liver", "pull",
+                         testing::Values("beam", "drop", "ligament", "liver", "press", "pull",
                                          "talk-good-constants", "talk-tissue-limits", "twist"),
                          [](const auto& test) {
                            std::string name = test.param;
