@@ -44,9 +44,9 @@ TetMesh cylinder(double radius, double length, Index resolution);
 // m^2, in `resolution` + 1 shells with three tets to the prism between two of them. The shells'
 // radii are a geometric sequence and m is 0.95 resolution / ln(radius / inner_radius), to the
 // nearest whole number from 1 on, so that tets have one shape all through the wall.
-// 60 m^2 resolution tets; its faces have label 1 outside and 2 inside. Smallest dihedral angle: at least 33 degrees from resolution 4 on, where
-// the inner radius is at least half the outer one. Volume and both surfaces converge with the
-// square of the resolution.
+// 60 m^2 resolution tets; its faces have label 1 outside and 2 inside. Smallest dihedral angle: at
+// least 33 degrees from resolution 4 on, where the inner radius is at least half the outer one.
+// Volume and both surfaces converge with the square of the resolution.
 TetMesh hollow_sphere(double radius, double inner_radius, Index resolution);
 
 }  // namespace sinew
