@@ -23,7 +23,7 @@ Moduli with_volume(const TetMesh& mesh, double poisson, double volume) {
   m.damping_ratio = 0.0;
   body.materials = {m};
   body.regions = {"all"};
-  return moduli_of(measure_stiffness(body, TestKind::traction, 1e-8));
+  return moduli_of(measure_stiffness(body, TestKind::traction, 1e-6));
 }
 
 // What the ratio of the bulk to the shear modulus is for nu: K / G = 2 (1 + nu) / (3 (1 - 2 nu)).
@@ -55,7 +55,7 @@ Calibration calibrate(const TetMesh& mesh, double poisson) {
     m = with_volume(mesh, poisson, kappa);
     ++result.tests;
     const double value = m.bulk / m.shear;
-    if (std::abs(m.poisson - poisson) <= 1e-7 || value == value_before) break;
+    if (std::abs(m.poisson - poisson) <= 1e-5 || value == value_before) break;
     const double next = kappa + (goal - value) * (kappa - before) / (value - value_before);
     before = kappa;
     value_before = value;

@@ -174,13 +174,19 @@ double energy(const Model& model, const State& state, const Homotopy& homotopy,
   return e;
 }
 
-// |outer forces on the free nodes| or |forces on the pinned nodes|, whichever is larger.
+// |outer forces on the free nodes| or |forces on the pinned nodes|, whichever is larger; where both
+// vanish, 1e-5 of what the material pulls with at a strain of one.
 double carried(const Model& model, const State& state, const Workspace& workspace) {
   const Field outer = outer_forces(model, state);
   const double reactions = parallel_sum(model.node_count(), [&](Index i) {
     return model.inverse_mass[uz(i)] == 0.0 ? workspace.force[uz(i)].squaredNorm() : 0.0;
   });
-  return std::sqrt(std::max(dot(outer, outer), reactions));
+  const double material = parallel_sum(model.tet_count(), [&](Index t) {
+    const double pull =
+        1e-5 * model.tet_modulus[uz(t)] * std::pow(model.rest_volume[uz(t)], 2.0 / 3.0);
+    return pull * pull;
+  });
+  return std::sqrt(std::max({dot(outer, outer), reactions, material}));
 }
 
 }  // namespace
