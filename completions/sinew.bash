@@ -20,7 +20,7 @@ _sinew() {
   local meshes=(mesh msh vtk vtu node ele)
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    _sinew_words "run resume info convert identify materials completion --help --version"
+    _sinew_words "run resume info convert identify converge validate materials completion --help --version"
     return
   fi
   case ${COMP_WORDS[1]}:$previous in
@@ -33,12 +33,21 @@ _sinew() {
       _sinew_words "gmsh41 gmsh41-binary gmsh22 gmsh22-binary ascii binary zlib base64"
       return
       ;;
+    validate:--law)
+      _sinew_words "neo-hookean fem calibrated lloyd vangelder"
+      return
+      ;;
+    validate:-o | validate:--out | validate:--dir)
+      mapfile -t COMPREPLY < <(compgen -d -- "$cur")
+      compopt -o filenames 2>/dev/null
+      return
+      ;;
     identify:--law)
       _sinew_words "all neo-hookean linear-fem calibrated lloyd vangelder"
       return
       ;;
     identify:--young | identify:--poisson | identify:--density | identify:--damping-ratio) return ;;
-    *:--threads | *:--set | *:--scale) return ;;
+    *:--threads | *:--set | *:--scale | *:--levels) return ;;
   esac
   case ${COMP_WORDS[1]}:$cur in
     run:-*) _sinew_words "-o --out --set --force --no-output --json -q --quiet --threads --help" ;;
@@ -49,6 +58,10 @@ _sinew() {
     resume:*) _sinew_files ;;
     identify:-*) _sinew_words "--young --poisson --law --density --damping-ratio --scale --html --json -q --quiet --help" ;;
     info:* | convert:* | identify:*) _sinew_files "${meshes[@]}" ;;
+    converge:-*) _sinew_words "--levels --set --json -q --quiet --threads --help" ;;
+    converge:*) _sinew_files toml ;;
+    validate:-*) _sinew_words "--dir --law -o --out --quick --full --list --json -q --quiet --threads --help" ;;
+    validate:*) _sinew_words "$(cd validation 2>/dev/null && printf '%s ' *)" ;;
     materials:-*) _sinew_words "--json --help" ;;
     materials:*) _sinew_words "artery brain breast fat heart kidney ligament liver muscle silicone-gel skin tendon" ;;
     completion:*) _sinew_words "bash zsh fish --help" ;;

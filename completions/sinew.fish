@@ -10,6 +10,8 @@ complete -c sinew -n __fish_use_subcommand -a resume -d 'Go on with a run from i
 complete -c sinew -n __fish_use_subcommand -a info -d 'Examine a mesh'
 complete -c sinew -n __fish_use_subcommand -a convert -d 'Convert between mesh formats'
 complete -c sinew -n __fish_use_subcommand -a identify -d 'Measure what each law makes of a material on a mesh'
+complete -c sinew -n __fish_use_subcommand -a converge -d 'See whether the answer depends on the mesh'
+complete -c sinew -n __fish_use_subcommand -a validate -d 'Compare the laws with reference values'
 complete -c sinew -n __fish_use_subcommand -a materials -d 'Show the tissue library'
 complete -c sinew -n __fish_use_subcommand -a completion -d 'Print a shell completion'
 
@@ -31,6 +33,26 @@ for suffix in .mesh .msh .vtk .vtu .node .ele
     complete -c sinew -n $meshes -a "(__fish_complete_suffix $suffix)"
 end
 complete -c sinew -n $meshes -l scale -x -d 'Factor for the coordinates: 0.001 for mm'
+set -l converge '__fish_seen_subcommand_from converge'
+complete -c sinew -n $converge -a '(__fish_complete_suffix .toml)'
+complete -c sinew -n $converge -l levels -x -d 'Meshes, the own one included' -a '2 3 4 5'
+complete -c sinew -n $converge -l set -x -d 'Override a value: KEY=VALUE'
+
+set -l validate '__fish_seen_subcommand_from validate'
+complete -c sinew -n $validate -a '(path basename validation/*/ 2>/dev/null)'
+complete -c sinew -n $validate -l dir -x -a '(__fish_complete_directories)' -d 'Folder of the cases'
+complete -c sinew -n $validate -l law -x -d 'Only this law' \
+    -a 'neo-hookean fem calibrated lloyd vangelder'
+complete -c sinew -n $validate -s o -l out -x -a '(__fish_complete_directories)' -d 'Folder to write'
+complete -c sinew -n $validate -l quick -d 'First variant, coarsest mesh'
+complete -c sinew -n $validate -l full -d 'The finest meshes too'
+complete -c sinew -n $validate -l list -d 'Only list the cases'
+
+set -l studies '__fish_seen_subcommand_from converge validate'
+complete -c sinew -n $studies -l json -d 'Print JSON'
+complete -c sinew -n $studies -s q -l quiet -d 'Print errors only'
+complete -c sinew -n $studies -l threads -x -d 'Threads to use'
+
 set -l identify '__fish_seen_subcommand_from identify'
 complete -c sinew -n $identify -l young -x -d 'Young\'s modulus asked for [Pa]'
 complete -c sinew -n $identify -l poisson -x -d 'Poisson\'s ratio asked for'
@@ -50,5 +72,5 @@ complete -c sinew -n '__fish_seen_subcommand_from info materials' -l json -d 'Pr
 complete -c sinew -n '__fish_seen_subcommand_from materials' \
     -a 'artery brain breast fat heart kidney ligament liver muscle silicone-gel skin tendon'
 complete -c sinew -n '__fish_seen_subcommand_from completion' -a 'bash zsh fish'
-set -l any '__fish_seen_subcommand_from run resume info convert identify materials completion'
+set -l any '__fish_seen_subcommand_from run resume info convert identify converge validate materials completion'
 complete -c sinew -n $any -l help -d 'Show help'

@@ -14,6 +14,8 @@ _sinew() {
         'info:Examine a mesh'
         'convert:Convert between mesh formats'
         'identify:Measure what each law makes of a material on a mesh'
+        'converge:See whether the answer depends on the mesh'
+        'validate:Compare the laws with reference values'
         'materials:Show the tissue library'
         'completion:Print a shell completion'
       )
@@ -60,6 +62,23 @@ _sinew() {
             '--html[Write a page with tables and plots]:file:_files' \
             '--json[Print JSON]' '(-q --quiet)'{-q,--quiet}'[No progress]' \
             '--help[Show help]' '1:mesh:_files -g "$meshes"'
+          ;;
+        converge)
+          _arguments '--levels[Meshes, the own one included]:count:(2 3 4 5)' \
+            '*--set[Override a value]:KEY=VALUE:' '--json[Print JSON]' \
+            '(-q --quiet)'{-q,--quiet}'[Print errors only]' \
+            '--threads[Threads to use]:count:' '--help[Show help]' \
+            '1:scene:_files -g "*.toml(-.)"'
+          ;;
+        validate)
+          _arguments '--dir[Folder of the cases]:folder:_files -/' \
+            '*--law[Only this law]:law:(neo-hookean fem calibrated lloyd vangelder)' \
+            '(-o --out)'{-o,--out}'[Folder to write]:folder:_files -/' \
+            '--quick[First variant, coarsest mesh]' '--full[The finest meshes too]' \
+            '--list[Only list the cases]' '--json[Print JSON]' \
+            '(-q --quiet)'{-q,--quiet}'[Print errors only]' \
+            '--threads[Threads to use]:count:' '--help[Show help]' \
+            '*:case:(${(@)$(print validation/*(N/:t))})'
           ;;
         materials)
           _arguments '--json[Print JSON]' '--help[Show help]' \

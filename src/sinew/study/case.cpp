@@ -17,9 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::pair<const char*, Kind>, 10> kinds = {{
+constexpr std::array<std::pair<const char*, Kind>, 11> kinds = {{
     {"probe", Kind::probe},
     {"radial", Kind::radial},
+    {"stretch", Kind::stretch},
     {"force", Kind::force},
     {"torque", Kind::torque},
     {"stress", Kind::stress},
@@ -146,7 +147,8 @@ Quantity read_quantity(const DocValue& item) {
   q.scale = t.number("scale");
   q.limit = t.numbers("limit");
   q.where = item.where;
-  const bool needs_of = q.kind == Kind::probe || q.kind == Kind::radial || q.kind == Kind::force ||
+  const bool needs_of = q.kind == Kind::probe || q.kind == Kind::radial ||
+                        q.kind == Kind::stretch || q.kind == Kind::force ||
                         q.kind == Kind::torque || q.kind == Kind::patch || q.kind == Kind::lowest;
   if (needs_of && q.of.empty()) t.fail(item, "'of' is missing: what is measured?");
   const bool free_axis = q.kind == Kind::radial || q.kind == Kind::patch ||

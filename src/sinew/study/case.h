@@ -15,6 +15,7 @@ namespace sinew::study {
 enum class Kind {
   probe,      // displacement of a probe along `axis` [m]
   radial,     // mean displacement of a probe's nodes away from the origin [m]
+  stretch,    // mean position of a probe along `axis` over that at rest, from the origin [-]
   force,      // of a pin on the body, along `axis` [N]
   torque,     // of a pin on the body about the mean of its nodes, about `axis` [N m]
   stress,     // mean first Piola stress from the forces of all pins, `axis` row and column [Pa]

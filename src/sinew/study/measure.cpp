@@ -150,6 +150,15 @@ double Experiment::measure(const Quantity& q) {
         sum += run_.state.position[uz(i)].norm() - model_.rest_position[uz(i)].norm();
       return sum / static_cast<double>(probe.nodes.size());
     }
+    case Kind::stretch: {
+      const Probe& probe = named(model_.probes, q, "probe");
+      double now = 0.0, rest = 0.0;
+      for (const Index i : probe.nodes) {
+        now += run_.state.position[uz(i)][axis];
+        rest += model_.rest_position[uz(i)][axis];
+      }
+      return now / rest;
+    }
     case Kind::force:
       return pin_force(named(model_.pins, q, "pin"))[axis];
     case Kind::torque:
