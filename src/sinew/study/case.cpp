@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::pair<const char*, Kind>, 11> kinds = {{
+constexpr std::array<std::pair<const char*, Kind>, 12> kinds = {{
     {"probe", Kind::probe},
     {"radial", Kind::radial},
     {"stretch", Kind::stretch},
@@ -29,6 +29,7 @@ constexpr std::array<std::pair<const char*, Kind>, 11> kinds = {{
     {"volume", Kind::volume},
     {"lowest", Kind::lowest},
     {"contact_time", Kind::contact_time},
+    {"obstacle", Kind::obstacle},
 }};
 
 constexpr const char* where_documented = "docs/validation.md lists the keys of a case";
@@ -147,9 +148,8 @@ Quantity read_quantity(const DocValue& item) {
   q.scale = t.number("scale");
   q.limit = t.numbers("limit");
   q.where = item.where;
-  const bool needs_of = q.kind == Kind::probe || q.kind == Kind::radial ||
-                        q.kind == Kind::stretch || q.kind == Kind::force ||
-                        q.kind == Kind::torque || q.kind == Kind::patch || q.kind == Kind::lowest;
+  const std::vector<Kind> whole = {Kind::stress, Kind::frequency, Kind::volume, Kind::contact_time};
+  const bool needs_of = std::find(whole.begin(), whole.end(), q.kind) == whole.end();
   if (needs_of && q.of.empty()) t.fail(item, "'of' is missing: what is measured?");
   const bool free_axis = q.kind == Kind::radial || q.kind == Kind::patch ||
                          q.kind == Kind::frequency || q.kind == Kind::volume ||

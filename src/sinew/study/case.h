@@ -24,13 +24,14 @@ enum class Kind {
   frequency,  // of a mode of small vibrations about the rest positions [Hz]
   volume,     // of all bodies over that at rest [-]
   lowest,     // smallest displacement of a probe along `axis` over the frames [m]
+  obstacle,   // force of the bodies on an obstacle along `axis` [N]
   contact_time,  // for which nodes touch the ground, in frames' resolution [s]
 };
 
 struct Quantity {
   std::string name;
   Kind kind = Kind::probe;
-  std::string of;    // name of the probe or pin
+  std::string of;    // name of the probe, pin or obstacle
   std::string axis;  // "x"; stress: "xy"; frequency: along which the mode moves most, or empty
   int mode = 0;      // frequency: number from 1, of those along `axis`
   std::string unit;

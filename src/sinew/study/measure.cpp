@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/terms.h"
 #include "sinew/mesh/tet_mesh.h"
 #include "sinew/scene/build.h"
@@ -171,6 +172,11 @@ double Experiment::measure(const Quantity& q) {
       return frequency(q.mode, q.axis);
     case Kind::volume:
       return volume_ratio();
+    case Kind::obstacle: {
+      const Obstacle& obstacle = named(model_.obstacles, q, "obstacle");
+      const auto o = static_cast<std::size_t>(&obstacle - model_.obstacles.data());
+      return read_obstacles(model_, run_.state.position, run_.state.time)[o].force[axis];
+    }
     case Kind::contact_time:
       return contact_time_;
   }
