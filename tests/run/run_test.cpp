@@ -159,7 +159,7 @@ TEST_F(Run, AFolderWithARunIsNotOverwrittenUnasked) {
 
 TEST_F(Run, AGivenStepAboveTheStableOneIsRefusedWithTheRemedies) {
   try {
-    run_scene(scene_of(hanging_box, {"dt=0.02"}), {});
+    run_scene(scene_of(hanging_box, {"dt=0.02", "box.law=lloyd"}), {});
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), ErrorKind::unstable);
@@ -209,6 +209,7 @@ duration = 1
 shape = "box"
 size = [0.1, 0.1, 0.1]
 cells = [4, 4, 4]
+law = "lloyd"
 young = 2e4
 damping_ratio = 0
 [pin.left]

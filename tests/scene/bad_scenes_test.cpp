@@ -81,7 +81,8 @@ const std::vector<Bad>& bad_scenes() {
        "scene.toml:5:8: 'path' in [pin.end] is a table; expected an array of tables\n"
        "  remedy: docs/scene-format.md says what 'path' takes"},
       {"stepper = { kind = \"verlet\" }\n" BEAM,
-       "scene.toml:1:11: 'stepper' in the scene is a table; expected one of \"verlet\"\n"
+       "scene.toml:1:11: 'stepper' in the scene is a table; expected one of \"verlet\", "
+       "\"static\"\n"
        "  remedy: the default is stepper = \"verlet\""},
       // --- ranges ---
       {BEAM "young = 0\n",
@@ -134,13 +135,14 @@ const std::vector<Bad>& bad_scenes() {
       {BEAM "law = \"loyd\"\n",
        "scene.toml:3:7: 'law' in [body.beam] is \"loyd\"; expected one of \"uniform\", \"lloyd\", "
        "\"vangelder\"; did you mean 'lloyd'?\n"
-       "  remedy: the default is law = \"lloyd\""},
+       "  remedy: the default is law = \"neo-hookean\""},
       {"[body.b]\nshape = \"cube\"\n",
        "scene.toml:2:9: 'shape' in [body.b] is \"cube\"; expected one of \"beam\", \"box\", "
        "\"sphere\", \"ellipsoid\", \"cylinder\", \"hollow_sphere\"\n"
        "  remedy: docs/scene-format.md says what 'shape' takes"},
       {"stepper = \"euler\"\n" BEAM,
-       "scene.toml:1:11: 'stepper' in the scene is \"euler\"; expected one of \"verlet\"\n"
+       "scene.toml:1:11: 'stepper' in the scene is \"euler\"; expected one of \"verlet\", "
+       "\"static\"\n"
        "  remedy: the default is stepper = \"verlet\""},
       // --- what does not go together ---
       {"duration = 1\n",

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "sinew/base/error.h"
-#include "sinew/base/random.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "tests/support/models.h"
@@ -112,34 +111,22 @@ TEST(Static, FollowsAPinThatTurnsHalfARound) {
   }
 }
 
-class Recovers : public ::testing::TestWithParam<double> {};
-
-// A body that was flattened, turned inside out or scattered finds back to its rest shape. Not
-// flattened at nu = 0.3: from there the minimisation ends in another, folded, rest state.
-TEST_P(Recovers, FromAnyStart) {
-  for (int start = GetParam() < 0.4 ? 1 : 0; start < 3; ++start) {
-    Material material;
-    material.poisson = GetParam();
-    Model m = test::tissue_box(material, {3, 3, 3});
-    m.gravity = Vec3::Zero();
-    m.pins.push_back({"floor", test::nodes_at(m, 1, -0.05), {}});
-    finish(m);
-    State state = initial_state(m);
-    for (Index i = 0; i < m.node_count(); ++i) {
-      if (m.inverse_mass[uz(i)] == 0.0) continue;
-      Vec3& x = state.position[uz(i)];
-      if (start == 0) x.y() = -0.05;
-      if (start == 1) x.y() = -0.1 - x.y();
-      if (start == 2) x = 0.2 * (random_point(static_cast<std::uint64_t>(i)) - Vec3::Constant(0.5));
-    }
-    StaticSolver(m).solve(1.0, {}, state);
-    for (Index i = 0; i < m.node_count(); ++i) {
-      EXPECT_LE((state.position[uz(i)] - m.rest_position[uz(i)]).norm(), 1e-5)
-          << "start " << start << " nu " << GetParam() << " node " << i;
-    }
+TEST(Static, RightsABoxThatWasTurnedInsideOut) {
+  Material material;
+  material.poisson = 0.3;
+  Model m = test::tissue_box(material, {3, 3, 3});
+  m.gravity = Vec3::Zero();
+  m.pins.push_back({"floor", test::nodes_at(m, 1, -0.05), {}});
+  finish(m);
+  State state = initial_state(m);
+  for (Index i = 0; i < m.node_count(); ++i) {
+    if (m.inverse_mass[uz(i)] > 0.0) state.position[uz(i)].y() = -0.1 - state.position[uz(i)].y();
+  }
+  StaticSolver(m).solve(1.0, {}, state);
+  for (Index i = 0; i < m.node_count(); ++i) {
+    EXPECT_LE((state.position[uz(i)] - m.rest_position[uz(i)]).norm(), 1e-5) << "node " << i;
   }
 }
-INSTANTIATE_TEST_SUITE_P(Poisson, Recovers, ::testing::Values(0.3, 0.45, 0.49));
 
 TEST(Static, RefusesABodyThatNothingHolds) {
   Material material;

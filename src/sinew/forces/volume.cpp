@@ -305,6 +305,30 @@ void press_cells(const Model& model, std::span<const Vec3> x, std::span<const do
   });
 }
 
+double guard_frequency2(const Model& model, std::span<const Vec3> x, const Workspace& workspace) {
+  constexpr double margin = 0.1;  // what v/V may lose within a step
+  const auto of_tet = [&](std::size_t t) {
+    const double rest = model.rest_volume[t];
+    if (workspace.tet_volume[t] >= (guard_threshold + margin) * rest) return 0.0;
+    const Tet& tet = model.tets[t];
+    const Vec3& x0 = x[uz(tet[0])];
+    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
+    double sum = 0.0;
+    for (std::size_t a = 0; a < 4; ++a) {
+      sum += model.inverse_mass[uz(tet[a])] * g[a].squaredNorm();
+    }
+    return guard_stiffness(model, t) / rest * sum;
+  };
+  return parallel_reduce(
+      model.tet_count(), 0.0,
+      [&](Range r) {
+        double largest = 0.0;
+        for (Index t = r.begin; t < r.end; ++t) largest = std::max(largest, of_tet(uz(t)));
+        return largest;
+      },
+      [](double a, double b) { return std::max(a, b); });
+}
+
 double largest_cell_change(const Model& model, std::span<const Vec3> x) {
   return parallel_reduce(
       model.cell_count(), 0.0,

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sinew/base/error.h"
+#include "sinew/forces/volume.h"
 #include "sinew/solver/verlet.h"
 
 namespace sinew {
@@ -104,6 +105,25 @@ void Stepping::begin_frame(RunState& run) const {
   }
 }
 
+// Takes at most `step` for the rest of the frame.
+void Stepping::shorten(RunState& run, double step) const {
+  ++run.step_reductions;
+  run.target_step = step;
+  const double span = run.step * static_cast<double>(run.steps_left);
+  run.steps_left = round_up(span / step);
+  run.step = span / static_cast<double>(run.steps_left);
+}
+
+// The guard of tets about to turn over is stiffer than all the rest and acts at once.
+void Stepping::watch_guard(RunState& run) const {
+  const double omega2 = guard_frequency2(model_, run.state.position, workspace_);
+  if (omega2 == 0.0) return;
+  const double omega = 2.0 / run.stable_step;
+  const double stable = 2.0 / std::sqrt(omega * omega + omega2);
+  run.smallest_stable_step = std::min(run.smallest_stable_step, stable);
+  if (run.step > safety_ * stable) shorten(run, safety_ * stable);
+}
+
 void Stepping::watch(RunState& run) {
   run.steps_to_watch = watch_interval;
   if (run.stiff_mode.empty()) return;
@@ -115,11 +135,7 @@ void Stepping::watch(RunState& run) {
     if (run.step > run.stable_step) ++run.unstable_watches;
   } else if (run.step > 1.03 * wish) {
     // The margin is being eaten up: shorten the rest of the frame.
-    ++run.step_reductions;
-    run.target_step = wish;
-    const double span = run.step * static_cast<double>(run.steps_left);
-    run.steps_left = round_up(span / wish);
-    run.step = span / static_cast<double>(run.steps_left);
+    shorten(run, wish);
   } else if (wish > 1.25 * run.target_step) {
     run.target_step = wish;  // from the next frame on
   }
@@ -146,6 +162,7 @@ bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
     const VerletReport report = verlet_step(model_, run.step, run.state, workspace_);
     --run.steps_left;
     --run.steps_to_watch;
+    if (automatic_ && model_.has_volume && run.steps_left > 0) watch_guard(run);
     run.contacts = report.contacts;
     run.limit_sweeps += report.limit_sweeps;
     run.unmet_limits += report.limits_met && report.volume_met ? 0 : 1;

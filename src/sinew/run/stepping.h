@@ -59,6 +59,8 @@ class Stepping {
   double frame_end(std::int64_t frame) const;
   void begin_frame(RunState& run) const;
   void watch(RunState& run);
+  void shorten(RunState& run, double step) const;
+  void watch_guard(RunState& run) const;
   bool rest_frame(RunState& run, const std::atomic<bool>* stop);
 
   const Model& model_;

@@ -349,8 +349,8 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
   state.last_step = 0.0;
   state.time = time;  // of the loads; the pins follow below
+  refuse_unheld_bodies(model_, outer_forces(model_, state));
   compute_forces(model_, state, workspace_);
-  refuse_unheld_bodies(model_, workspace_.force);
 
   Loads steps{options, report, {workspace_.force, 0.0}, 0, 0.0};
   keep_free(model_, steps.homotopy.force);
