@@ -65,9 +65,9 @@ inline Vec3 gather_tets(const Model& model, const Workspace& workspace, Index no
 }
 
 // Square of the highest angular frequency [1/s2] that the guard adds: the largest g/V sum_a
-// |dv/dx_a|^2 / m_a over the tets that it acts on, or that are about to come under it (0 where there
-// is none). Expects workspace.tet_volume, of the step before: the guard sets in too fast for the
-// explicit stepper to wait until the stable step is looked at.
+// |dv/dx_a|^2 / m_a over the tets that it acts on, or that are about to come under it (0 where
+// there is none). Expects workspace.tet_volume, of the step before: the guard sets in too fast for
+// the explicit stepper to wait until the stable step is looked at.
 double guard_frequency2(const Model& model, std::span<const Vec3> x, const Workspace& workspace);
 
 // Largest |J_c - 1| over the node cells [-]; 0 where there are none.

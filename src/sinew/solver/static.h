@@ -29,8 +29,8 @@ struct StaticOptions {
 
 struct StaticReport {
   // |f| over the free nodes divided by the norm of what they carry: the larger of the outer forces
-  // on the free nodes and the material's forces on the pinned ones (reactions); where both vanish, by
-  // 1e-5 of what the material pulls with at a strain of one.
+  // on the free nodes and the material's forces on the pinned ones (reactions); where both vanish,
+  // by 1e-5 of what the material pulls with at a strain of one.
   double residual = 0.0;
   double force = 0.0;  // |f| itself [N]
   int load_steps = 0;
