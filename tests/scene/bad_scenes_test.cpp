@@ -133,7 +133,8 @@ const std::vector<Bad>& bad_scenes() {
        "  remedy: no rotation is [1, 0, 0, 0]"},
       // --- words ---
       {BEAM "law = \"loyd\"\n",
-       "scene.toml:3:7: 'law' in [body.beam] is \"loyd\"; expected one of \"uniform\", \"lloyd\", "
+       "scene.toml:3:7: 'law' in [body.beam] is \"loyd\"; expected one of \"neo-hookean\", "
+       "\"calibrated\", \"uniform\", \"lloyd\", "
        "\"vangelder\"; did you mean 'lloyd'?\n"
        "  remedy: the default is law = \"neo-hookean\""},
       {"[body.b]\nshape = \"cube\"\n",
