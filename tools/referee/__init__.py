@@ -1,0 +1,1 @@
+"""Reference values for Sinew's validation suite, by CalculiX and by analysis: see tools/referee.py."""
