@@ -73,7 +73,7 @@ def stiff(runner, name, young, poisson):
                             lambda: by_fem(block(4), young, poisson))
     for i, quantity in enumerate(("tip", "tip_z")):
         value = extrapolate("", quantity, (4, 6, 8), [answers[k][i] for k in (4, 6, 8)])
-        value.meshes["fem.py, 4"] = check[i]
+        value.meshes["k = 4, fem.py"] = check[i]
         yield value
 
 
@@ -88,7 +88,7 @@ def soft(runner, name, young, poisson):
     for i, quantity in enumerate(("tip", "tip_z")):
         value, other = answers[6][i], answers[4][i]
         yield Value("", quantity, value, max(abs(value - other), 1e-3 * abs(value)),
-                    {"CalculiX, uniform 4": coarse[i], "fem.py, 4": other, "fem.py, 6": value})
+                    {"uniform k = 4": coarse[i], "k = 4, fem.py": other, "k = 6, fem.py": value})
 
 
 def values(runner):

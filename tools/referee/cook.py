@@ -107,9 +107,9 @@ def values(runner):
     write_meshes(ROOT / "validation" / "cook" / "meshes")
     answers = {n: by_calculix(runner, n)[0] for n in (4, 8, 12, 16)}
     value = extrapolate("", "tip", (8, 12, 16), [answers[n] for n in (8, 12, 16)])
-    value.meshes = {str(n): answer for n, answer in answers.items()}
+    value.meshes = {f"n = {n}": answer for n, answer in answers.items()}
     for n in (4, 8):
-        value.meshes[f"fem.py, {n}"] = runner.remember(f"cook-fem-{n}", lambda n=n: by_fem(n))[0]
+        value.meshes[f"n = {n}, fem.py"] = runner.remember(f"cook-fem-{n}", lambda n=n: by_fem(n))[0]
     yield value
 
 

@@ -133,11 +133,10 @@ def by_fem(n, stiffness=1e9, reduced=True):
 
 
 def values(runner):
-    answers = {n: by_calculix(runner, n)[0] for n in (4,)}
-    for n in (4, 8, 12):
-        answers[f"fem.py, {n}"] = runner.remember(f"indentation-fem-{n}", lambda n=n: by_fem(n))[0]
-    value = extrapolate("", "force", (4, 8, 12), [answers[f"fem.py, {n}"] for n in (4, 8, 12)])
-    value.meshes = {str(name): answer for name, answer in answers.items()}
+    sizes = (4, 8, 12)
+    found = [runner.remember(f"indentation-fem-{n}", lambda n=n: by_fem(n))[0] for n in sizes]
+    value = extrapolate("", "force", sizes, found, "n = {}")
+    value.meshes = {"n = 4, CalculiX": by_calculix(runner, 4)[0], **value.meshes}
     yield value
 
 

@@ -39,10 +39,10 @@ def observed_order(sizes, values):
     return low
 
 
-def extrapolate(variant, quantity, sizes, values, floor=0.0):
+def extrapolate(variant, quantity, sizes, values, names="k = {}"):
     """Richardson's extrapolation over three or more meshes. The error is the whole distance from
     the finest mesh; without a clean order, the spread of the last two meshes around the finest."""
-    meshes = dict(zip((str(n) for n in sizes), values))
+    meshes = {names.format(n): v for n, v in zip(sizes, values)}
     order = observed_order(sizes, values) if len(values) > 2 else None
     if order is None:
         value, error = values[-1], abs(values[-1] - values[-2])
@@ -50,7 +50,7 @@ def extrapolate(variant, quantity, sizes, values, floor=0.0):
         (n2, n3), (v2, v3) = sizes[-2:], values[-2:]
         value = v3 + (v3 - v2) / ((n3 / n2) ** order - 1.0)
         error = abs(value - v3)
-    return Value(variant, quantity, value, max(error, floor), meshes)
+    return Value(variant, quantity, value, error, meshes)
 
 
 def rounded(value, error):
