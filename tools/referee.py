@@ -18,7 +18,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MODULES = ("beam", "twist", "cook", "bending", "indentation", "vibration", "liver",
-           "analytic")
+           "analytic", "gel")
 
 
 def cases():
