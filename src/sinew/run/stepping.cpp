@@ -40,6 +40,18 @@ double typed_step(double h) {
       Location{scene.file});
 }
 
+// A rest state is a minimum of the energy: what acts as a projection after the step is no part of
+// it.
+void refuse_projections(const Scene& scene, const Model& model) {
+  const char* what = model.ground             ? "[ground]"
+                     : !model.limited.empty() ? "stretch_limit and compress_limit"
+                     : model.has_volume_limit ? "volume_limit"
+                                              : nullptr;
+  if (what == nullptr) return;
+  throw Error(ErrorKind::input, fmt::format("stepper = \"static\" does not know {}", what),
+              "take it out of the scene, or take stepper = \"verlet\"", Location{scene.file});
+}
+
 // Rest states differ from frame to frame only where pins, loads or obstacles change with time.
 bool changes_with_time(const Model& model) {
   for (const Obstacle& o : model.obstacles) {
@@ -66,6 +78,7 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
       interval_(1.0 / scene.output.fps),
       tolerance_(scene.tolerance) {
   if (scene.stepper == "static") {
+    refuse_projections(scene, model);
     static_ = std::make_unique<StaticSolver>(model);
     if (!changes_with_time(model)) interval_ = duration_;
     frames_ = round_up(duration_ / interval_);
