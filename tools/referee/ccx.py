@@ -80,9 +80,9 @@ def node_set(name, ids):
     return f"*NSET,NSET={name}\n" + numbers(ids)
 
 
-def static_step(body, law, first=0.1, largest=0.25):
+def static_step(body, law, first=0.1, largest=0.25, solver=""):
     """One load step; `body` holds the loads and what to print. Times are shares of the step."""
-    return ("*STEP,NLGEOM,INC=2000\n*STATIC\n"
+    return (f"*STEP,NLGEOM,INC=2000\n*STATIC{',SOLVER=' * bool(solver)}{solver}\n"
             f"{first},1.,1e-7,{largest}\n"
             f"*CONTROLS,PARAMETERS=FIELD\n{TOLERANCE[law]},{TOLERANCE[law]}\n{body}*END STEP\n")
 
