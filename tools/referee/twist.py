@@ -6,7 +6,7 @@ from . import ccx, mesh
 from .fem import Bar
 from .values import extrapolate
 
-SOURCE = ("CalculiX 2.20 on 20-node hexahedra, k = 2 cells over the width; k = 4, 6, 8, "
+SOURCE = ("CalculiX 2.20 on 20-node hexahedra, k = 2 cells over the width; k = 2, 4, 6, "
           "extrapolated, by the same elements in tools/referee/fem.py")
 YOUNG, POISSON = 15e3, 0.45
 STEPS = 6  # of 30 degrees
@@ -68,12 +68,11 @@ def by_fem(k, reduced=True):
 
 
 def values(runner):
-    answers = {k: runner.remember(f"twist-fem-{k}", lambda k=k: by_fem(k)) for k in (2, 4, 6, 8)}
+    answers = {k: runner.remember(f"twist-fem-{k}", lambda k=k: by_fem(k)) for k in (2, 4, 6)}
     check = by_calculix(runner, 2)
     for i, quantity in enumerate(("torque", "axial")):
-        value = extrapolate("", quantity, (4, 6, 8), [answers[k][i] for k in (4, 6, 8)])
-        value.meshes = {"k = 2, CalculiX": check[i],
-                        **{f"k = {k}": answer[i] for k, answer in answers.items()}}
+        value = extrapolate("", quantity, (2, 4, 6), [answers[k][i] for k in (2, 4, 6)])
+        value.meshes = {"k = 2, CalculiX": check[i], **value.meshes}
         yield value
 
 
