@@ -110,9 +110,10 @@ def impact(cells):
 def values(runner):
     sizes = (12, 16, 24)
     found = [runner.remember(f"gel-{n}", lambda n=n: impact(n)) for n in sizes]
-    for i, (quantity, theory) in enumerate(zip(("approach", "contact", "rebound"),
-                                               (*hertz(), 1.0))):
-        value = extrapolate("", quantity, sizes, [f[i] for f in found], "{} cells")
+    for i, (quantity, theory, unit) in enumerate((("approach", hertz()[0], 1.0),
+                                                  ("contact", hertz()[1], 1.0),
+                                                  ("rebound", SPEED, SPEED))):
+        value = extrapolate("", quantity, sizes, [unit * f[i] for f in found], "{} cells")
         value.meshes = {"Hertz": theory, **value.meshes}
         yield value
 

@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::pair<const char*, Kind>, 12> kinds = {{
+constexpr std::array<std::pair<const char*, Kind>, 14> kinds = {{
     {"probe", Kind::probe},
     {"radial", Kind::radial},
     {"stretch", Kind::stretch},
@@ -29,6 +29,8 @@ constexpr std::array<std::pair<const char*, Kind>, 12> kinds = {{
     {"volume", Kind::volume},
     {"lowest", Kind::lowest},
     {"contact_time", Kind::contact_time},
+    {"sink", Kind::sink},
+    {"leave", Kind::leave},
     {"obstacle", Kind::obstacle},
 }};
 

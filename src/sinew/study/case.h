@@ -25,13 +25,15 @@ enum class Kind {
   volume,     // of all bodies over that at rest [-]
   lowest,     // smallest displacement of a probe along `axis` over the frames [m]
   obstacle,   // force of the bodies on an obstacle along `axis` [N]
-  contact_time,  // for which nodes touch the ground, in frames' resolution [s]
+  contact_time,  // from the start to the last frame with a node on the ground [s]
+  sink,          // how far the centre of a body's mass goes against `axis`, at most [m]
+  leave,         // velocity of the centre of a body's mass along `axis` in that last frame [m/s]
 };
 
 struct Quantity {
   std::string name;
   Kind kind = Kind::probe;
-  std::string of;    // name of the probe, pin or obstacle
+  std::string of;    // name of the probe, pin, obstacle or body
   std::string axis;  // "x"; stress: "xy"; frequency: along which the mode moves most, or empty
   int mode = 0;      // frequency: number from 1, of those along `axis`
   std::string unit;

@@ -35,23 +35,35 @@ const Part& named(const std::vector<Part>& parts, const Quantity& q, const char*
               fmt::format("the quantity '{}' is measured there", q.name), q.where);
 }
 
+// Mean of a body's nodes, by mass.
+Vec3 mass_mean(const Model& model, const Body& body, const std::vector<Vec3>& values) {
+  Vec3 sum = Vec3::Zero();
+  double mass = 0.0;
+  for (Index i = body.nodes.begin; i < body.nodes.end; ++i) {
+    sum += model.mass[uz(i)] * values[uz(i)];
+    mass += model.mass[uz(i)];
+  }
+  return sum / mass;
+}
+
 }  // namespace
 
 Experiment::Experiment(const Scene& scene) : scene_(scene), model_(build_model(scene)) {
   run_.state = initial_state(model_);
   lowest_.assign(model_.probes.size(), Vec3::Zero());
+  for (const Body& body : model_.bodies)
+    flight_.push_back({mass_mean(model_, body, run_.state.position)});
 }
 
 bool Experiment::run(const std::atomic<bool>* stop, const std::function<void(double)>& on_share) {
   const auto start = std::chrono::steady_clock::now();
   Stepping stepping(scene_, model_, run_);
   while (run_.frame < stepping.frame_count()) {
-    const double before = run_.state.time;
     if (!stepping.advance_frame(run_, stop)) return false;
     const std::vector<ProbeReading> readings = probes();
     for (std::size_t p = 0; p < readings.size(); ++p)
       lowest_[p] = lowest_[p].cwiseMin(readings[p].displacement);
-    if (run_.contacts > 0) contact_time_ += run_.state.time - before;
+    watch_flight();
     if (on_share) on_share(run_.state.time / scene_.duration);
     if (stop != nullptr && stop->load() && run_.frame < stepping.frame_count()) return false;
   }
@@ -59,6 +71,17 @@ bool Experiment::run(const std::atomic<bool>* stop, const std::function<void(dou
   force_ = stepping.workspace().force;
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return true;
+}
+
+void Experiment::watch_flight() {
+  if (run_.contacts > 0) contact_time_ = run_.state.time;
+  for (std::size_t b = 0; b < flight_.size(); ++b) {
+    const Body& body = model_.bodies[b];
+    Flight& flight = flight_[b];
+    flight.lowest =
+        flight.lowest.cwiseMin(mass_mean(model_, body, run_.state.position) - flight.start);
+    if (run_.contacts > 0) flight.leave = mass_mean(model_, body, run_.state.half_velocity);
+  }
 }
 
 Index Experiment::inverted_tets() const {
@@ -179,6 +202,12 @@ double Experiment::measure(const Quantity& q) {
     }
     case Kind::contact_time:
       return contact_time_;
+    case Kind::sink:
+    case Kind::leave: {
+      const Body& body = named(model_.bodies, q, "body");
+      const Flight& flight = flight_[static_cast<std::size_t>(&body - model_.bodies.data())];
+      return q.kind == Kind::sink ? -flight.lowest[axis] : flight.leave[axis];
+    }
   }
   return 0.0;
 }

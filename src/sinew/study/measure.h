@@ -39,6 +39,7 @@ class Experiment {
   double stress(int row, int column) const;
   double distance_from_path(const Pin& pin) const;
   double frequency(int mode, const std::string& axis);
+  void watch_flight();
 
   const Scene& scene_;
   Model model_;
@@ -46,7 +47,14 @@ class Experiment {
   std::vector<Vec3> force_;  // total at the end [N] (nodes)
   double seconds_ = 0.0;
   std::vector<Vec3> lowest_;  // smallest displacement over the frames [m] (probes)
-  double contact_time_ = 0.0;
+  // Centres of mass, over the frames.
+  struct Flight {
+    Vec3 start = Vec3::Zero();   // [m]
+    Vec3 lowest = Vec3::Zero();  // smallest displacement along each axis [m]
+    Vec3 leave = Vec3::Zero();   // velocity in the last frame with a node on the ground [m/s]
+  };
+  std::vector<Flight> flight_;       // (bodies)
+  double contact_time_ = 0.0;        // the end of that frame [s]
   std::vector<double> omega_;        // [rad/s] of the modes found
   std::vector<Vec3> participation_;  // how much of the mass a mode moves along each axis [-]
 };
