@@ -39,10 +39,10 @@ def deck(b, young, poisson, kind="C3D20R"):
 
 
 def by_calculix(runner, name, b, young, poisson, kind="C3D20R"):
-    """Mean y and z displacement of the end [m]."""
+    """Mean y displacement of the end [m]."""
     table = runner.run(name, deck(b, young, poisson, kind)).last("displacements", "TIP")
     weights = b.side_weights(2, -1)
-    return mesh.mean(table, weights, 1), mesh.mean(table, weights, 2)
+    return (mesh.mean(table, weights, 1),)
 
 
 def by_fem(b, young, poisson, reduced=True):
@@ -56,8 +56,7 @@ def by_fem(b, young, poisson, reduced=True):
     x = b.points.copy()
     for step in range(1, steps + 1):
         x = bar.minimise(x, free, load * step / steps)
-    return [sum(w * (x - b.points)[n - 1, axis] for n, w in b.side_weights(2, -1).items())
-            for axis in (1, 2)]
+    return (sum(w * (x - b.points)[n - 1, 1] for n, w in b.side_weights(2, -1).items()),)
 
 
 def stiff(runner, name, young, poisson):
@@ -71,10 +70,9 @@ def stiff(runner, name, young, poisson):
                                      lambda: by_fem(block(8), young, poisson))
     check = runner.remember(f"beam-{name}-{poisson}-fem-4",
                             lambda: by_fem(block(4), young, poisson))
-    for i, quantity in enumerate(("tip", "tip_z")):
-        value = extrapolate("", quantity, (4, 6, 8), [answers[k][i] for k in (4, 6, 8)])
-        value.meshes["k = 4, fem.py"] = check[i]
-        yield value
+    value = extrapolate("", "tip", (4, 6, 8), [answers[k][0] for k in (4, 6, 8)])
+    value.meshes["k = 4, fem.py"] = check[0]
+    return value
 
 
 def soft(runner, name, young, poisson):
@@ -83,20 +81,22 @@ def soft(runner, name, young, poisson):
     answers = {k: runner.remember(f"beam-{name}-{poisson}-fem-{k}",
                                   lambda k=k: by_fem(block(k), young, poisson, reduced=False))
                for k in (4, 6)}
-    coarse = by_calculix(runner, f"beam-{name}-{poisson}-uniform", block(4, grading=1.0), young,
-                         poisson, "C3D20")
-    for i, quantity in enumerate(("tip", "tip_z")):
-        value, other = answers[6][i], answers[4][i]
-        yield Value("", quantity, value, max(abs(value - other), 1e-3 * abs(value)),
-                    {"uniform k = 4": coarse[i], "k = 4, fem.py": other, "k = 6, fem.py": value})
+    value, other = answers[6][0], answers[4][0]
+    meshes = {"k = 4, fem.py": other, "k = 6, fem.py": value}
+    try:
+        meshes["k = 4, uniform"] = by_calculix(runner, f"beam-{name}-{poisson}-uniform",
+                                               block(4, grading=1.0), young, poisson, "C3D20")[0]
+    except ccx.RefereeError as problem:
+        runner.say(f"  {problem}")
+    return Value("", "tip", value, max(abs(value - other), 1e-3 * abs(value)), meshes)
 
 
 def values(runner):
     for name, young in YOUNG.items():
         for poisson in POISSON:
-            for value in (soft if young < 100e3 else stiff)(runner, name, young, poisson):
-                value.variant = f"E={name} nu={poisson}"
-                yield value
+            value = (soft if young < 100e3 else stiff)(runner, name, young, poisson)
+            value.variant = f"E={name} nu={poisson}"
+            yield value
 
 
 CASES = {"beam": (SOURCE, values, EXAMPLE)}
