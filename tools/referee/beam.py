@@ -55,7 +55,8 @@ def by_fem(b, young, poisson, reduced=True):
     steps = 10 if young < 100e3 else 2
     x = b.points.copy()
     for step in range(1, steps + 1):
-        x = bar.minimise(x, free, load * step / steps)
+        # Rounding hides more where kappa is large.
+        x = bar.minimise(x, free, load * step / steps, 1e-9 if young < 1e7 else 1e-7)
     return (sum(w * (x - b.points)[n - 1, 1] for n, w in b.side_weights(2, -1).items()),)
 
 
@@ -88,7 +89,8 @@ def soft(runner, name, young, poisson):
                                                block(4, grading=1.0), young, poisson, "C3D20")[0]
     except ccx.RefereeError as problem:
         runner.say(f"  {problem}")
-    return Value("", "tip", value, max(abs(value - other), 1e-3 * abs(value)), meshes)
+    # Uniform meshes with k = 6 fold otherwise, and hang 0.2 to 0.6 % less deep.
+    return Value("", "tip", value, max(abs(value - other), 5e-3 * abs(value)), meshes)
 
 
 def values(runner):
