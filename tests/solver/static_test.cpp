@@ -111,20 +111,22 @@ TEST(Static, FollowsAPinThatTurnsHalfARound) {
   }
 }
 
-TEST(Static, RightsABoxThatWasTurnedInsideOut) {
-  Material material;
-  material.poisson = 0.3;
-  Model m = test::tissue_box(material, {3, 3, 3});
-  m.gravity = Vec3::Zero();
-  m.pins.push_back({"floor", test::nodes_at(m, 1, -0.05), {}});
-  finish(m);
-  State state = initial_state(m);
-  for (Index i = 0; i < m.node_count(); ++i) {
-    if (m.inverse_mass[uz(i)] > 0.0) state.position[uz(i)].y() = -0.1 - state.position[uz(i)].y();
-  }
-  StaticSolver(m).solve(1.0, {}, state);
-  for (Index i = 0; i < m.node_count(); ++i) {
-    EXPECT_LE((state.position[uz(i)] - m.rest_position[uz(i)]).norm(), 1e-5) << "node " << i;
+TEST(Static, FindsBackFromTangledStarts) {
+  for (const double poisson : {0.3, 0.45, 0.499}) {
+    for (const test::Tangle tangle : test::tangles) {
+      Material material;
+      material.poisson = poisson;
+      Model m = test::tissue_box(material, {3, 3, 3});
+      m.gravity = Vec3::Zero();
+      m.pins.push_back({"floor", test::nodes_at(m, 1, -0.05), {}});
+      finish(m);
+      State state = initial_state(m);
+      test::tangle_nodes(m, tangle, state.position);
+      StaticSolver(m).solve(1.0, {}, state);
+      for (Index i = 0; i < m.node_count(); ++i) {
+        EXPECT_LE((state.position[uz(i)] - m.rest_position[uz(i)]).norm(), 1e-5) << "node " << i;
+      }
+    }
   }
 }
 

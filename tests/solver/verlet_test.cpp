@@ -10,6 +10,7 @@
 #include "sinew/forces/limits.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
+#include "sinew/forces/righting.h"
 #include "sinew/forces/terms.h"
 #include "sinew/solver/stable_step.h"
 #include "tests/support/models.h"
@@ -336,6 +337,32 @@ TEST(Verlet, ANonFiniteStateStopsAtThatStepAndNamesThePlace) {
     EXPECT_NE(e.message().find("the state has run away beyond 1e9 m at t = "), std::string::npos);
     EXPECT_NE(e.message().find("body box, node "), std::string::npos);
     EXPECT_NE(e.message().find("its spring "), std::string::npos);
+  }
+}
+
+// The law itself leads a free body back from flat and inside out; righting does from everywhere.
+TEST(Verlet, FindsBackFromTangledStarts) {
+  for (const bool held : {false, true}) {
+    for (const test::Tangle tangle : test::tangles) {
+      Material material;
+      material.young = 1e4;
+      material.damping_ratio = 0.3;
+      Model m = tissue_box(material, {3, 3, 3});
+      m.gravity = Vec3::Zero();
+      if (held) m.pins.push_back({"floor", test::nodes_at(m, 1, -0.05), {}});
+      finish(m);
+      State state = initial_state(m);
+      test::tangle_nodes(m, tangle, state.position);
+      Workspace workspace(m);
+      int righted = 0;
+      for (int i = 0; i < 4000; ++i) righted += verlet_step(m, 2e-4, state, workspace).righted;
+      EXPECT_GT(righted, 0);
+      EXPECT_LT(righted, 2000);
+      const std::vector<Vec3> shape = rest_shape_at(m, m.bodies[0], state.position);
+      for (std::size_t i = 0; i < shape.size(); ++i) {
+        EXPECT_LE((state.position[i] - shape[i]).norm(), 1e-3) << "node " << i;
+      }
+    }
   }
 }
 

@@ -1,8 +1,10 @@
 // Small models for tests, put together by hand or from shapes.
 #pragma once
 
+#include <array>
 #include <vector>
 
+#include "sinew/base/random.h"
 #include "sinew/forces/assemble.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/model/model.h"
@@ -56,6 +58,25 @@ inline Model tissue_box(const Material& material, const std::array<int, 3>& cell
   Model m;
   add_body(m, spec);
   return m;
+}
+
+// What start = "flat", "inverted" and "random" do, across the y axis, to the nodes that are free.
+enum class Tangle { flat, inverted, random };
+inline constexpr std::array<Tangle, 3> tangles = {Tangle::flat, Tangle::inverted, Tangle::random};
+
+inline void tangle_nodes(const Model& m, Tangle tangle, std::vector<Vec3>& x) {
+  Vec3 low = m.rest_position[0];
+  Vec3 high = low;
+  for (const Vec3& p : m.rest_position) {
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (m.inverse_mass[i] == 0.0) continue;
+    if (tangle == Tangle::flat) x[i].y() = 0.5 * (low.y() + high.y());
+    if (tangle == Tangle::inverted) x[i].y() = low.y() + high.y() - x[i].y();
+    if (tangle == Tangle::random) x[i] = low + random_point(i).cwiseProduct(high - low);
+  }
 }
 
 // Nodes whose coordinate along `axis` is within 1e-9 of `value`.

@@ -28,6 +28,15 @@ inline SpringPull spring_pull(const Vec3& x_ij, const Vec3& v_ij, double k, doub
   return {(k * (length - l0) * length * inverse2 + dashpot) * x_ij, dashpot * along};
 }
 
+// The same of a dashpot alone: no square root.
+inline SpringPull dashpot_pull(const Vec3& x_ij, const Vec3& v_ij, double c) {
+  const double length2 = x_ij.squaredNorm();
+  if (length2 == 0.0) return {};
+  const double along = v_ij.dot(x_ij);
+  const double dashpot = c * along / length2;
+  return {dashpot * x_ij, dashpot * along};
+}
+
 // Stored energy k/2 (|x_ij| - l0)^2 [J].
 inline double spring_energy(const Vec3& x_ij, double k, double l0) {
   const double extension = x_ij.norm() - l0;

@@ -12,7 +12,9 @@ Workspace::Workspace(const Model& model)
       obstacle_center(obstacle_centers(model, 0.0)) {
   if (!model.has_volume) return;
   tet_volume.resize(model.tets.size());
+  tet_gradient.resize(model.tets.size());
   tet_pressure.resize(model.tets.size());
+  tet_pressure_change.resize(model.tets.size());
   tet_rate.resize(model.tets.size());
   tet_force.resize(4 * model.tets.size());
   cell_pressure.resize(model.cell_volume.size());
@@ -32,8 +34,10 @@ double compute_spring_forces(const Model& model, const State& state, Workspace& 
             const auto c = uz(model.springs[s][1]);
             const Vec3 x_ij = state.position[c] - state.position[a];
             const Vec3 v_ij = state.half_velocity[c] - state.half_velocity[a];
+            const double k = model.stiffness[s];
             const SpringPull pull =
-                spring_pull(x_ij, v_ij, model.stiffness[s], model.rest_length[s], model.damping[s]);
+                k == 0.0 ? dashpot_pull(x_ij, v_ij, model.damping[s])
+                         : spring_pull(x_ij, v_ij, k, model.rest_length[s], model.damping[s]);
             workspace.spring_force[s] = pull.force;
             heat += pull.heat;
           }

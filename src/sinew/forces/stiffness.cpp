@@ -10,7 +10,7 @@
 namespace sinew {
 
 void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
-  if (model.has_volume) compute_volume_forces(model, x, workspace);
+  if (model.has_volume) compute_volume_pressures(model, x, workspace);
 }
 
 void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double a, double b,

@@ -10,16 +10,9 @@
 namespace sinew {
 namespace {
 
-// Stiffness of the guard [Pa]: ten times that of the volume of the tet's surroundings, which is
-// what turns it over. (W(4), E = 15 kPa, nu = 0.3: the smallest v/V at rest is 0.15, and 8 of the
-// 1,280 tets are inverted without it; the tip moves by 0.15 % less.)
-double guard_stiffness(const Model& model, std::size_t t) {
-  double bulk = model.tet_shear[t];
-  for (std::size_t a = 0; a < 4; ++a) {
-    const Index c = model.cells[t][a];
-    if (c >= 0) bulk += model.cell_share[t][a] * model.cell_bulk[uz(c)];
-  }
-  return 10.0 * bulk;
+// mu of the guard [Pa]: none where the tet keeps its own volume.
+double guard_modulus(const Model& model, std::size_t t) {
+  return model.tet_bulk[t] > 0.0 ? 0.0 : model.tet_modulus[t];
 }
 
 double corner_volume(std::span<const Vec3> x, const Tet& t) {
@@ -47,21 +40,26 @@ double mean_of_cells(const Model& model, std::size_t t, std::span<const double> 
   return sum;
 }
 
-void compute_tet_volumes(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
-  parallel_for(model.tet_count(),
-               [&](Index i) { workspace.tet_volume[uz(i)] = corner_volume(x, model.tets[uz(i)]); });
-}
-
-// workspace.tet_rate: what u changes every tet's volume by, to first order.
-void compute_tet_rates(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
-                       Workspace& workspace) {
+// workspace.tet_volume and tet_gradient at x: v = e3 . (e1 x e2) / 6 is e3 . dv/dx_3.
+void compute_tet_geometry(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
   parallel_for(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
     const Tet& tet = model.tets[t];
     const Vec3& x0 = x[uz(tet[0])];
-    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
+    const Vec3 e3 = x[uz(tet[3])] - x0;
+    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, e3);
+    workspace.tet_volume[t] = e3.dot(g[3]);
+    workspace.tet_gradient[t] = g;
+  });
+}
+
+// workspace.tet_rate: what u changes every tet's volume by, to first order.
+void compute_tet_rates(const Model& model, std::span<const Vec3> u, Workspace& workspace) {
+  parallel_for(model.tet_count(), [&](Index i) {
+    const auto t = uz(i);
     double rate = 0.0;
-    for (std::size_t c = 0; c < 4; ++c) rate += g[c].dot(u[uz(tet[c])]);
+    for (std::size_t c = 0; c < 4; ++c)
+      rate += workspace.tet_gradient[t][c].dot(u[uz(model.tets[t][c])]);
     workspace.tet_rate[t] = rate;
   });
 }
@@ -162,26 +160,21 @@ void finish_volume_terms(Model& model) {
        [](std::size_t t, std::size_t a) { return static_cast<Index>(4 * t + a); });
 }
 
-void compute_volume_forces(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
-  compute_tet_volumes(model, x, workspace);
+void compute_volume_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+  compute_tet_geometry(model, x, workspace);
   compute_cell_pressures(model, workspace);
   parallel_for(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
-    const Tet& tet = model.tets[t];
     const double ratio = workspace.tet_volume[t] / model.rest_volume[t];
-    double pressure = -model.tet_shear[t] + model.tet_bulk[t] * (ratio - 1.0) +
-                      mean_of_cells(model, t, workspace.cell_pressure);
-    if (ratio < guard_threshold) pressure += guard_pressure(ratio, guard_stiffness(model, t));
-    workspace.tet_pressure[t] = pressure;
-    const Vec3& x0 = x[uz(tet[0])];
-    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
-    for (std::size_t a = 0; a < 4; ++a) workspace.tet_force[4 * t + a] = -pressure * g[a];
+    workspace.tet_pressure[t] = -model.tet_shear[t] + model.tet_bulk[t] * (ratio - 1.0) +
+                                mean_of_cells(model, t, workspace.cell_pressure) +
+                                guard_pressure(ratio, guard_modulus(model, t));
   });
 }
 
 double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
   if (!model.has_volume) return 0.0;
-  compute_tet_volumes(model, x, workspace);
+  compute_tet_geometry(model, x, workspace);
   compute_cell_pressures(model, workspace);
   const double of_tets = parallel_sum(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
@@ -189,7 +182,7 @@ double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& wor
     const double ratio = workspace.tet_volume[t] / rest;
     double w = -model.tet_shear[t] * (ratio - 1.0) +
                0.5 * model.tet_bulk[t] * (ratio - 1.0) * (ratio - 1.0);
-    if (ratio < guard_threshold) w += guard_energy(ratio, guard_stiffness(model, t));
+    if (ratio < guard_threshold) w += guard_energy(ratio, guard_modulus(model, t));
     return rest * w;
   });
   const double of_cells = parallel_sum(model.cell_count(), [&](Index i) {
@@ -204,7 +197,7 @@ double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& wor
 void compute_volume_force_change(const Model& model, std::span<const Vec3> x, double a,
                                  std::span<const Vec3> u, Workspace& workspace) {
   // First the rate of every volume, then that of the pressures, then that of the forces.
-  compute_tet_rates(model, x, u, workspace);
+  compute_tet_rates(model, u, workspace);
   parallel_for(model.cell_count(), [&](Index i) {
     const auto c = uz(i);
     double rate = 0.0;
@@ -218,7 +211,7 @@ void compute_volume_force_change(const Model& model, std::span<const Vec3> x, do
     const Tet& tet = model.tets[t];
     const double rest = model.rest_volume[t];
     double stiffness = model.tet_bulk[t];
-    if (workspace.tet_volume[t] < guard_threshold * rest) stiffness += guard_stiffness(model, t);
+    stiffness += guard_stiffness(workspace.tet_volume[t] / rest, guard_modulus(model, t));
     const double rate =
         stiffness * workspace.tet_rate[t] / rest + mean_of_cells(model, t, workspace.cell_rate);
     const double pressure = workspace.tet_pressure[t];
@@ -226,7 +219,7 @@ void compute_volume_force_change(const Model& model, std::span<const Vec3> x, do
     const Vec3& u0 = u[uz(tet[0])];
     const std::array<Vec3, 3> e = {x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0};
     const std::array<Vec3, 3> d = {u[uz(tet[1])] - u0, u[uz(tet[2])] - u0, u[uz(tet[3])] - u0};
-    const Corners g = volume_gradient(e[0], e[1], e[2]);
+    const Corners& g = workspace.tet_gradient[t];
     const Corners dg = volume_gradient_change(e[0], e[1], e[2], d[0], d[1], d[2]);
     for (std::size_t c = 0; c < 4; ++c) {
       workspace.tet_force[4 * t + c] = -a * (rate * g[c] + pressure * dg[c]);
@@ -234,9 +227,8 @@ void compute_volume_force_change(const Model& model, std::span<const Vec3> x, do
   });
 }
 
-void relax_volume(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
-                  Workspace& workspace) {
-  compute_tet_rates(model, x, u, workspace);
+void relax_volume(const Model& model, std::span<const Vec3> u, Workspace& workspace) {
+  compute_tet_rates(model, u, workspace);
   // Pressure that the change of volume calls up, with the shear stiffness of the surroundings in
   // series: 1 / (1/kappa + 3/mu) instead of kappa.
   const auto series = [](double kappa, double mu) {
@@ -256,13 +248,9 @@ void relax_volume(const Model& model, std::span<const Vec3> x, std::span<const V
   });
   parallel_for(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
-    const Tet& tet = model.tets[t];
-    const double pressure = mean_of_cells(model, t, workspace.cell_rate) +
-                            series(model.tet_bulk[t], model.tet_modulus[t]) *
-                                workspace.tet_rate[t] / model.rest_volume[t];
-    const Vec3& x0 = x[uz(tet[0])];
-    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
-    for (std::size_t c = 0; c < 4; ++c) workspace.tet_force[4 * t + c] = pressure * g[c];
+    workspace.tet_pressure_change[t] = mean_of_cells(model, t, workspace.cell_rate) +
+                                       series(model.tet_bulk[t], model.tet_modulus[t]) *
+                                           workspace.tet_rate[t] / model.rest_volume[t];
   });
 }
 
@@ -281,43 +269,36 @@ double sum_of_cell(const Model& model, std::size_t c, const std::vector<double>&
 
 void sum_cells(const Model& model, std::span<const Vec3> x, Workspace& workspace,
                std::span<double> volume) {
-  compute_tet_volumes(model, x, workspace);
+  compute_tet_geometry(model, x, workspace);
   parallel_for(model.cell_count(),
                [&](Index c) { volume[uz(c)] = sum_of_cell(model, uz(c), workspace.tet_volume); });
 }
 
-void rate_cells(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
-                Workspace& workspace, std::span<double> rate) {
-  compute_tet_rates(model, x, u, workspace);
+void rate_cells(const Model& model, std::span<const Vec3> u, Workspace& workspace,
+                std::span<double> rate) {
+  compute_tet_rates(model, u, workspace);
   parallel_for(model.cell_count(),
                [&](Index c) { rate[uz(c)] = sum_of_cell(model, uz(c), workspace.tet_rate); });
 }
 
-void press_cells(const Model& model, std::span<const Vec3> x, std::span<const double> weight,
-                 Workspace& workspace) {
-  parallel_for(model.tet_count(), [&](Index i) {
-    const auto t = uz(i);
-    const Tet& tet = model.tets[t];
-    const double pressure = mean_of_cells(model, t, weight);
-    const Vec3& x0 = x[uz(tet[0])];
-    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
-    for (std::size_t c = 0; c < 4; ++c) workspace.tet_force[4 * t + c] = pressure * g[c];
+void press_cells(const Model& model, std::span<const double> weight, Workspace& workspace) {
+  parallel_for(model.tet_count(), [&](Index t) {
+    workspace.tet_pressure_change[uz(t)] = mean_of_cells(model, uz(t), weight);
   });
 }
 
-double guard_frequency2(const Model& model, std::span<const Vec3> x, const Workspace& workspace) {
+double guard_frequency2(const Model& model, const Workspace& workspace) {
   constexpr double margin = 0.1;  // what v/V may lose within a step
   const auto of_tet = [&](std::size_t t) {
     const double rest = model.rest_volume[t];
-    if (workspace.tet_volume[t] >= (guard_threshold + margin) * rest) return 0.0;
+    const double ratio = workspace.tet_volume[t] / rest;
+    if (ratio >= guard_threshold + margin || ratio <= -margin) return 0.0;
     const Tet& tet = model.tets[t];
-    const Vec3& x0 = x[uz(tet[0])];
-    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
     double sum = 0.0;
     for (std::size_t a = 0; a < 4; ++a) {
-      sum += model.inverse_mass[uz(tet[a])] * g[a].squaredNorm();
+      sum += model.inverse_mass[uz(tet[a])] * workspace.tet_gradient[t][a].squaredNorm();
     }
-    return guard_stiffness(model, t) / rest * sum;
+    return guard_factor * guard_modulus(model, t) / rest * sum;
   };
   return parallel_reduce(
       model.tet_count(), 0.0,

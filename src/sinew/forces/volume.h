@@ -24,35 +24,52 @@ void add_volume_terms(Model& model, const Body& body, const std::vector<Material
 // Derives the lists cell -> tets and node -> tets; called once, by finish().
 void finish_volume_terms(Model& model);
 
-// Fills workspace.tet_pressure (s_t) and workspace.tet_force (on the corners) at positions x.
-void compute_volume_forces(const Model& model, std::span<const Vec3> x, Workspace& workspace);
+// sum_t p_t dv_t/dx_i over the node's tets in their fixed order, p (tets).
+inline Vec3 press_tets(const Model& model, const Workspace& workspace, std::span<const double> p,
+                       Index node) {
+  Vec3 sum = Vec3::Zero();
+  const auto n = uz(node);
+  for (Index k = model.tet_start[n]; k < model.tet_start[n + 1]; ++k) {
+    const auto corner = uz(model.node_tet[uz(k)]);
+    sum += p[corner / 4] * workspace.tet_gradient[corner / 4][corner % 4];
+  }
+  return sum;
+}
+
+// Fills workspace.tet_volume, tet_gradient and tet_pressure (s_t) at positions x: all that the
+// forces are made of (push_of_tets), and that the products below expect.
+void compute_volume_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace);
+
+// -sum_t s_t dv_t/dx_i over the node's tets in their fixed order: the force on it [N].
+inline Vec3 push_of_tets(const Model& model, const Workspace& workspace, Index node) {
+  return -press_tets(model, workspace, workspace.tet_pressure, node);
+}
 
 // W [J]: zero at rest.
 double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace);
 
 // Fills workspace.tet_force with what a displacement u changes the corner forces by, to first
-// order and with the sign of a force: -a H u. Expects workspace.tet_pressure and tet_volume as
-// compute_volume_forces leaves them at x.
+// order and with the sign of a force: -a H u. Expects what compute_volume_pressures leaves at x.
 void compute_volume_force_change(const Model& model, std::span<const Vec3> x, double a,
                                  std::span<const Vec3> u, Workspace& workspace);
 
-// Fills workspace.tet_force with B^T D B u: B u the change of the volumes, D their stiffness with
-// the shear stiffness of the surroundings in series. What a preconditioner needs to see a nearly
-// incompressible material as it is (solver/static.h).
-void relax_volume(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
-                  Workspace& workspace);
+// Fills workspace.tet_pressure_change with D B u, so that press_tets gives B^T D B u: B u the
+// change of the volumes, D their stiffness with the shear stiffness of the surroundings in series.
+// What a preconditioner needs to see a nearly incompressible material as it is (solver/static.h).
+// Expects workspace.tet_gradient.
+void relax_volume(const Model& model, std::span<const Vec3> u, Workspace& workspace);
 
 // --- the pieces of a projection on the cells' volumes (volume_limit.h) ---
 
-// volume = current volume of every cell [m3] (cells).
+// volume = current volume of every cell [m3] (cells). Leaves workspace.tet_gradient for the others.
 void sum_cells(const Model& model, std::span<const Vec3> x, Workspace& workspace,
                std::span<double> volume);
 // rate = what u changes those volumes by, to first order [m3] (cells).
-void rate_cells(const Model& model, std::span<const Vec3> x, std::span<const Vec3> u,
-                Workspace& workspace, std::span<double> rate);
-// Fills workspace.tet_force with the gradient of sum_c weight_c V_c(x).
-void press_cells(const Model& model, std::span<const Vec3> x, std::span<const double> weight,
-                 Workspace& workspace);
+void rate_cells(const Model& model, std::span<const Vec3> u, Workspace& workspace,
+                std::span<double> rate);
+// Fills workspace.tet_pressure_change so that press_tets gives the gradient of
+// sum_c weight_c V_c(x).
+void press_cells(const Model& model, std::span<const double> weight, Workspace& workspace);
 
 // Sum, for a node in the fixed order of its tets, of what workspace.tet_force holds.
 inline Vec3 gather_tets(const Model& model, const Workspace& workspace, Index node) {
@@ -66,9 +83,9 @@ inline Vec3 gather_tets(const Model& model, const Workspace& workspace, Index no
 
 // Square of the highest angular frequency [1/s2] that the guard adds: the largest g/V sum_a
 // |dv/dx_a|^2 / m_a over the tets that it acts on, or that are about to come under it (0 where
-// there is none). Expects workspace.tet_volume, of the step before: the guard sets in too fast for
-// the explicit stepper to wait until the stable step is looked at.
-double guard_frequency2(const Model& model, std::span<const Vec3> x, const Workspace& workspace);
+// there is none). Expects workspace.tet_volume and tet_gradient of the step before: the guard sets
+// in too fast for the explicit stepper to wait until the stable step is looked at.
+double guard_frequency2(const Model& model, const Workspace& workspace);
 
 // Largest |J_c - 1| over the node cells [-]; 0 where there are none.
 double largest_cell_change(const Model& model, std::span<const Vec3> x);

@@ -39,21 +39,49 @@ Violation measure(const Model& model, const std::vector<Vec3>& x, Workspace& wor
 }
 
 // u = W G^T lambda on the nodes.
-void spread(const Model& model, const std::vector<Vec3>& x, const CellField& lambda,
-            Workspace& workspace, std::vector<Vec3>& u) {
-  press_cells(model, x, lambda, workspace);
+void spread(const Model& model, const CellField& lambda, Workspace& workspace,
+            std::vector<Vec3>& u) {
+  press_cells(model, lambda, workspace);
   parallel_for(model.node_count(), [&](Index i) {
-    u[uz(i)] = model.inverse_mass[uz(i)] * gather_tets(model, workspace, i);
+    u[uz(i)] =
+        model.inverse_mass[uz(i)] * press_tets(model, workspace, workspace.tet_pressure_change, i);
   });
 }
 
 // y = G u of the limited cells.
-void rates(const Model& model, const std::vector<Vec3>& x, const std::vector<Vec3>& u,
-           Workspace& workspace, CellField& y) {
-  rate_cells(model, x, u, workspace, y);
+void rates(const Model& model, const std::vector<Vec3>& u, Workspace& workspace, CellField& y) {
+  rate_cells(model, u, workspace, y);
   for (std::size_t i = 0; i < y.size(); ++i) {
     if (model.volume_limit[i] == no_limit) y[i] = 0.0;
   }
+}
+
+// An estimate of the diagonal of G W G^T: sum_t w^2 sum_a |dv/dx_a|^2 / m_a over the cell's tets.
+CellField measure_diagonal(const Model& model, const Workspace& workspace) {
+  CellField diagonal(model.cell_volume.size());
+  parallel_for(model.cell_count(), [&](Index i) {
+    const auto c = uz(i);
+    double sum = 0.0;
+    for (auto k = uz(model.cell_start[c]); k < uz(model.cell_start[c + 1]); ++k) {
+      const auto t = uz(model.cell_tet[k]);
+      double of_tet = 0.0;
+      for (std::size_t a = 0; a < 4; ++a) {
+        of_tet +=
+            model.inverse_mass[uz(model.tets[t][a])] * workspace.tet_gradient[t][a].squaredNorm();
+      }
+      sum += model.cell_weight[k] * model.cell_weight[k] * of_tet;
+    }
+    diagonal[c] = sum > 0.0 ? sum : 1.0;
+  });
+  return diagonal;
+}
+
+// What the linear solve leaves is well within every limit.
+bool is_small(const Model& model, const CellField& r) {
+  for (std::size_t i = 0; i < r.size(); ++i) {
+    if (std::abs(r[i]) > 0.2 * model.volume_limit[i] * model.cell_volume[i]) return false;
+  }
+  return true;
 }
 
 }  // namespace
@@ -62,32 +90,37 @@ VolumeLimitReport enforce_volume_limit(const Model& model, std::vector<Vec3>& x,
                                        Workspace& workspace, int most) {
   VolumeLimitReport report;
   const std::size_t cells = model.cell_volume.size();
-  CellField c(cells), lambda(cells), r(cells), p(cells), q(cells);
+  CellField c(cells), lambda(cells), r(cells), z(cells), p(cells), q(cells);
   std::vector<Vec3> u(x.size());
   Violation v = measure(model, x, workspace, c);
   while (!v.met && report.projections < most) {
     ++report.projections;
+    const CellField diagonal = measure_diagonal(model, workspace);
+    const auto scale = [&] {
+      for (std::size_t i = 0; i < cells; ++i) z[i] = r[i] / diagonal[i];
+    };
     std::fill(lambda.begin(), lambda.end(), 0.0);
     for (std::size_t i = 0; i < cells; ++i) r[i] = -c[i];
-    p = r;
-    double rr = dot(r, r);
-    const double goal = 1e-4 * rr;
-    for (int k = 0; k < 200 && rr > goal; ++k) {
-      spread(model, x, p, workspace, u);
-      rates(model, x, u, workspace, q);
+    scale();
+    p = z;
+    double rz = dot(r, z);
+    for (int k = 0; k < 400 && !is_small(model, r); ++k) {
+      spread(model, p, workspace, u);
+      rates(model, u, workspace, q);
       ++report.products;
       const double curvature = dot(p, q);
       if (!(curvature > 0.0)) break;
-      const double alpha = rr / curvature;
+      const double alpha = rz / curvature;
       for (std::size_t i = 0; i < cells; ++i) {
         lambda[i] += alpha * p[i];
         r[i] -= alpha * q[i];
       }
-      const double next = dot(r, r);
-      for (std::size_t i = 0; i < cells; ++i) p[i] = r[i] + next / rr * p[i];
-      rr = next;
+      scale();
+      const double next = dot(r, z);
+      for (std::size_t i = 0; i < cells; ++i) p[i] = z[i] + next / rz * p[i];
+      rz = next;
     }
-    spread(model, x, lambda, workspace, u);
+    spread(model, lambda, workspace, u);
     parallel_for(model.node_count(), [&](Index i) { x[uz(i)] += u[uz(i)]; });
     v = measure(model, x, workspace, c);
   }

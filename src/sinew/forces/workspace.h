@@ -1,6 +1,7 @@
 // Scratch of a run: holds nothing that the next step could not compute again.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "sinew/base/vec.h"
@@ -16,13 +17,17 @@ struct Workspace {
   std::vector<double> partial;        // sums of blocks, whatever they are of
   std::vector<Vec3> obstacle_center;  // where compute_forces last saw them [m] (obstacles)
 
+  std::vector<char> tangled;  // of find_tangled: 1 where a body is (bodies)
+
   // Volume terms; empty where the model has none.
-  std::vector<double> tet_volume;     // v_t [m3] (tets)
-  std::vector<double> tet_pressure;   // s_t [Pa] (tets)
-  std::vector<double> tet_rate;       // change of v_t [m3] (tets)
-  std::vector<Vec3> tet_force;        // on the corners [N] (4 per tet)
-  std::vector<double> cell_pressure;  // kappa_c (J_c - 1) [Pa] (cells)
-  std::vector<double> cell_rate;      // change of it [Pa] (cells)
+  std::vector<double> tet_volume;                 // v_t [m3] (tets)
+  std::vector<std::array<Vec3, 4>> tet_gradient;  // dv_t/dx of the corners [m2] (tets)
+  std::vector<double> tet_pressure;               // s_t [Pa] (tets)
+  std::vector<double> tet_pressure_change;        // change of it, or a weight in its place (tets)
+  std::vector<double> tet_rate;                   // change of v_t [m3] (tets)
+  std::vector<Vec3> tet_force;                    // on the corners [N] (4 per tet)
+  std::vector<double> cell_pressure;              // kappa_c (J_c - 1) [Pa] (cells)
+  std::vector<double> cell_rate;                  // change of it [Pa] (cells)
 };
 
 }  // namespace sinew

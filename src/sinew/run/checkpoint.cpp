@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view magic = "SINEWCP2";
+constexpr std::string_view magic = "SINEWCP3";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>
@@ -38,6 +38,7 @@ void visit(Archive& a, Run& r) {
   a.value(r.unstable_watches);
   a.value(r.limit_sweeps);
   a.value(r.unmet_limits);
+  a.value(r.righting_steps);
   a.value(r.contacts);
   a.value(r.newton_steps);
   a.value(r.products);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sinew/base/hash.h"
+#include "sinew/forces/righting.h"
 #include "sinew/forces/springs.h"
 #include "sinew/io/file_io.h"
 #include "sinew/run/checkpoint.h"
@@ -155,6 +156,12 @@ class Runner {
           fmt::format("{} of {} steps ended with a limit violated; more limit_sweeps, or a larger "
                       "limit_tolerance, or limits that the pins leave room for",
                       run.unmet_limits, run.state.step));
+    }
+    if (run.righting_steps > 0) {
+      s.warnings.push_back(fmt::format(
+          "a body was tangled (over {:.0f} % of its tets inside out) for {} of {} steps "
+          "and was led back to its rest shape",
+          100.0 * tangled_share, run.righting_steps, run.state.step));
     }
     if (!options_.out.empty()) {
       io::write_file(options_.out / summary_name, to_json(s).dump(2) + "\n");

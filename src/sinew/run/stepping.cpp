@@ -129,7 +129,7 @@ void Stepping::shorten(RunState& run, double step) const {
 
 // The guard of tets about to turn over is stiffer than all the rest and acts at once.
 void Stepping::watch_guard(RunState& run) const {
-  const double omega2 = guard_frequency2(model_, run.state.position, workspace_);
+  const double omega2 = guard_frequency2(model_, workspace_);
   if (omega2 == 0.0) return;
   const double omega = 2.0 / run.stable_step;
   const double stable = 2.0 / std::sqrt(omega * omega + omega2);
@@ -178,6 +178,7 @@ bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
     if (automatic_ && model_.has_volume && run.steps_left > 0) watch_guard(run);
     run.contacts = report.contacts;
     run.limit_sweeps += report.limit_sweeps;
+    run.righting_steps += report.righted > 0 ? 1 : 0;
     run.unmet_limits += report.limits_met && report.volume_met ? 0 : 1;
     if (run.steps_left > 0 && stop != nullptr && stop->load()) return false;
   }

@@ -31,6 +31,7 @@ struct RunState {
   std::int64_t unstable_watches = 0;  // times that a given dt was found above the stable step
   std::int64_t limit_sweeps = 0;      // sweeps over limited springs in all
   std::int64_t unmet_limits = 0;      // steps that ended with a limit violated
+  std::int64_t righting_steps = 0;    // steps in which a tangled body was led back
   std::int64_t contacts = 0;          // nodes on the ground in the last step
   std::int64_t newton_steps = 0;      // of the static stepper, in all
   std::int64_t products = 0;          // Hessian products it took, in all

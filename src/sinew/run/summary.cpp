@@ -92,6 +92,7 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.contacts = run.contacts;
   s.limit_sweeps = run.limit_sweeps;
   s.unmet_limits = run.unmet_limits;
+  s.righting_steps = run.righting_steps;
   s.limit_violation = measure_limit_violation(model, x);
   s.step_reductions = run.step_reductions;
   s.newton_steps = run.newton_steps;
@@ -162,6 +163,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
           {"volume_ratio", s.volume_ratio},
           {"largest_cell_change", s.largest_cell_change},
           {"inverted_tets", s.inverted_tets},
+          {"righting_steps", s.righting_steps},
           {"max_stretch", s.max_stretch},
           {"max_compress", s.max_compress},
           {"peak_stretch", s.peak_stretch},

@@ -49,7 +49,7 @@ struct Summary {
   double max_stretch = 0.0, max_compress = 0.0;    // at the end, as a share of the rest length
   double peak_stretch = 0.0, peak_compress = 0.0;  // the largest of all frames
   std::int64_t contacts = 0;                       // nodes on the ground at the end
-  std::int64_t limit_sweeps = 0, unmet_limits = 0;
+  std::int64_t limit_sweeps = 0, unmet_limits = 0, righting_steps = 0;
   double limit_violation = 0.0;  // at the end, as a share of the rest length
   std::int64_t step_reductions = 0;
   std::int64_t newton_steps = 0, products = 0;  // static

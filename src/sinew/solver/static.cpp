@@ -8,6 +8,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
+#include "sinew/forces/righting.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/forces/volume.h"
@@ -37,13 +38,16 @@ void add(Field& x, double a, const Field& y) {  // x += a y
 // at x, D = (V/kappa + 3 V/mu)^-1. It is the inverse of A + B^T (kappa/V) B with 3 V/mu in the
 // place of B A^-1 B^T (Woodbury); because (div u)^2 <= 3 |grad u|^2 that place is filled from
 // above, and P^-1 stays positive. Without it the iterations grow as sqrt(kappa/mu).
-void precondition(const Model& model, const ScalarPreconditioner& laplacian, const Field& x,
-                  const Field& r, Workspace& workspace, Field& z) {
+// Expects what prepare_stiffness leaves in the workspace.
+void precondition(const Model& model, const ScalarPreconditioner& laplacian, const Field& r,
+                  Workspace& workspace, Field& z) {
   laplacian.apply(r, z);
   if (!model.has_volume) return;
-  relax_volume(model, x, z, workspace);
+  relax_volume(model, z, workspace);
   Field y(r.size());
-  parallel_for(model.node_count(), [&](Index i) { y[uz(i)] = gather_tets(model, workspace, i); });
+  parallel_for(model.node_count(), [&](Index i) {
+    y[uz(i)] = press_tets(model, workspace, workspace.tet_pressure_change, i);
+  });
   Field correction;
   laplacian.apply(y, correction);
   parallel_for(model.node_count(), [&](Index i) { z[uz(i)] -= correction[uz(i)]; });
@@ -227,7 +231,7 @@ int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Ve
   // Nothing but a prescribed displacement: its forces set the scale.
   const double target = goal > 0.0 ? goal : tolerance * std::sqrt(dot(r, r));
   Field z, p;
-  precondition(model_, preconditioner_, x, r, workspace_, z);
+  precondition(model_, preconditioner_, r, workspace_, z);
   p = z;
   double rz = dot(r, z);
   int products = 1;
@@ -240,7 +244,7 @@ int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Ve
     const double alpha = rz / curvature;
     add(u, alpha, p);
     add(r, -alpha, q);
-    precondition(model_, preconditioner_, x, r, workspace_, z);
+    precondition(model_, preconditioner_, r, workspace_, z);
     const double next = dot(r, z);
     const double beta = next / rz;
     rz = next;
@@ -258,7 +262,7 @@ int newton_direction(const Model& model, const Field& x, const Field& r0, double
   prepare_stiffness(model, x, workspace);
   p.assign(r0.size(), Vec3::Zero());
   Field r(r0), z, q(r0.size());
-  precondition(model, preconditioner, x, r, workspace, z);
+  precondition(model, preconditioner, r, workspace, z);
   Field d(z);
   double rz = dot(r, z);
   const double goal = forcing * std::sqrt(dot(r, r));
@@ -275,7 +279,7 @@ int newton_direction(const Model& model, const Field& x, const Field& r0, double
     add(p, alpha, d);
     add(r, -alpha, q);
     if (std::sqrt(dot(r, r)) <= goal) break;
-    precondition(model, preconditioner, x, r, workspace, z);
+    precondition(model, preconditioner, r, workspace, z);
     const double next = dot(r, z);
     const double beta = next / rz;
     rz = next;
@@ -290,6 +294,10 @@ bool line_search(const Model& model, const Field& f, const Field& p, const Homot
                  Workspace& workspace, State& state) {
   const double slope = dot(f, p);
   const double before = energy(model, state, homotopy, workspace);
+  // What the pull of the network and the push of the tets, which cancel at rest, leave of digits.
+  const double rounding = 1e-13 * parallel_sum(model.tet_count(), [&](Index t) {
+                            return model.tet_modulus[uz(t)] * model.rest_volume[uz(t)];
+                          });
   const Field start = state.position;
   double alpha = 1.0;
   for (int cut = 0; cut < 40; ++cut) {
@@ -297,7 +305,7 @@ bool line_search(const Model& model, const Field& f, const Field& p, const Homot
     add(state.position, alpha, p);
     const double now = energy(model, state, homotopy, workspace);
     if (now <= before - 1e-4 * alpha * slope) return true;
-    if (alpha * slope <= 1e-9 * std::max(std::abs(before), std::abs(now))) {
+    if (alpha * slope <= 1e-9 * std::max(std::abs(before), std::abs(now)) + rounding) {
       const Field after = free_force(model, state, homotopy, workspace);
       if (std::abs(dot(after, p)) <= 0.9 * slope) return true;
     }
@@ -351,6 +359,14 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
   state.time = time;  // of the loads; the pins follow below
   refuse_unheld_bodies(model_, outer_forces(model_, state));
   compute_forces(model_, state, workspace_);
+  if (find_tangled(model_, workspace_) > 0) {
+    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
+      if (workspace_.tangled[b] == 0) continue;
+      const std::vector<Vec3> shape = rest_shape_at(model_, model_.bodies[b], state.position);
+      std::copy(shape.begin(), shape.end(), state.position.begin() + model_.bodies[b].nodes.begin);
+    }
+    compute_forces(model_, state, workspace_);
+  }
 
   Loads steps{options, report, {workspace_.force, 0.0}, 0, 0.0};
   keep_free(model_, steps.homotopy.force);

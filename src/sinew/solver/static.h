@@ -47,6 +47,9 @@ class StaticSolver {
   // is: Newton's method with conjugate gradients and a line search on the energy. Velocities become
   // zero, state.time = time. Dashpots and drag play no part.
   //
+  // A start that is tangled (forces/righting.h) is no guess worth keeping: the body starts from its
+  // rest shape, moved rigidly to where it is.
+  //
   // Where Newton's method does not get through, pins and loads are brought on in smaller steps.
   // Throws Error(input) where a body has nothing to hold it against the forces on it, and
   // Error(diverged) where no rest state is found.

@@ -11,6 +11,7 @@
 #include "sinew/forces/limits.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
+#include "sinew/forces/righting.h"
 #include "sinew/forces/terms.h"
 #include "sinew/forces/volume_limit.h"
 
@@ -165,6 +166,12 @@ Index suspect_spring(const Model& model, const Workspace& workspace, Index node)
 VerletReport verlet_step(const Model& model, double h, State& state, Workspace& workspace) {
   VerletReport report;
   state.energy.dissipated += h * compute_forces(model, state, workspace);
+  double energy = 0.0;
+  report.righted = find_tangled(model, workspace);
+  if (report.righted > 0) {
+    energy = measure_energies(model, state, workspace).total();
+    right_tangled_bodies(model, state, h, workspace);
+  }
   add_work_of_loads(model, workspace, h, state);
   add_work_of_obstacles(model, h, state);
   const Index broken = move_free_nodes(model, workspace, h, state);
@@ -181,6 +188,9 @@ VerletReport verlet_step(const Model& model, double h, State& state, Workspace& 
   state.last_step = h;
   state.time += h;
   ++state.step;
+  if (report.righted > 0) {
+    state.energy.work_in += measure_energies(model, state, workspace).total() - energy;
+  }
   if (broken != none) report_divergence(model, workspace, state, broken);
   return report;
 }

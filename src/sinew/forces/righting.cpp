@@ -1,0 +1,131 @@
+#include "sinew/forces/righting.h"
+
+#include <Eigen/SVD>
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/network.h"
+#include "sinew/forces/volume.h"
+
+namespace sinew {
+namespace {
+
+// Nodes of the body whose motion is given.
+Index count_held(const Model& model, const Body& body) {
+  Index held = 0;
+  for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) {
+    held += model.inverse_mass[i] == 0.0 ? 1 : 0;
+  }
+  return held;
+}
+
+// w [1/s]: 8 sqrt(mu / rho) / V^(1/3), with the means of the body's materials.
+double frequency(const Model& model, const Body& body, double h) {
+  double stiffness = 0.0;
+  for (auto t = uz(body.tets.begin); t < uz(body.tets.end); ++t) {
+    stiffness += model.tet_modulus[t] * model.rest_volume[t];
+  }
+  double mass = 0.0;
+  for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) mass += model.mass[i];
+  return std::min(8.0 * std::sqrt(stiffness / mass) / std::cbrt(body.rest_volume), 0.3 / h);
+}
+
+Vec3 mean_velocity(const Model& model, const State& state, const Body& body) {
+  Vec3 momentum = Vec3::Zero();
+  double mass = 0.0;
+  for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) {
+    momentum += model.mass[i] * state.half_velocity[i];
+    mass += model.mass[i];
+  }
+  return momentum / mass;
+}
+
+}  // namespace
+
+int find_tangled(const Model& model, Workspace& workspace) {
+  workspace.tangled.assign(model.bodies.size(), 0);
+  if (!model.has_volume) return 0;
+  int tangled = 0;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Range tets = model.bodies[b].tets;
+    const auto first = uz(tets.begin);
+    const Index inverted = parallel_reduce(
+        tets.size(), Index{0},
+        [&](Range r) {
+          Index count = 0;
+          for (auto k = uz(r.begin); k < uz(r.end); ++k) {
+            const bool kept = model.tet_shear[first + k] > 0.0 || model.tet_bulk[first + k] > 0.0 ||
+                              model.cells[first + k][0] >= 0;
+            count += kept && workspace.tet_volume[first + k] <= 0.0 ? 1 : 0;
+          }
+          return count;
+        },
+        [](Index a, Index c) { return a + c; });
+    if (inverted > tangled_share * tets.size()) {
+      workspace.tangled[b] = 1;
+      ++tangled;
+    }
+  }
+  return tangled;
+}
+
+std::vector<Vec3> rest_shape_at(const Model& model, const Body& body, std::span<const Vec3> x) {
+  double mass = 0.0;
+  for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) mass += model.mass[i];
+  const Index held = count_held(model, body);
+  const double held_weight = held > 0 ? 1e6 * mass / held : 0.0;
+  const auto weight = [&](std::size_t i) {
+    return model.inverse_mass[i] == 0.0 ? held_weight : model.mass[i];
+  };
+  Vec3 rest_center = Vec3::Zero();
+  Vec3 center = Vec3::Zero();
+  double sum = 0.0;
+  for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) {
+    rest_center += weight(i) * model.rest_position[i];
+    center += weight(i) * x[i];
+    sum += weight(i);
+  }
+  rest_center /= sum;
+  center /= sum;
+  Mat3 moment = Mat3::Zero();
+  for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) {
+    moment += weight(i) * (x[i] - center) * (model.rest_position[i] - rest_center).transpose();
+  }
+  // The rotation nearest to the moment; of a mirrored one, the direction with the least moment
+  // turns back (Kabsch 1976).
+  const Eigen::JacobiSVD<Mat3> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  Mat3 u = svd.matrixU();
+  if (u.determinant() * svd.matrixV().determinant() < 0.0) u.col(2) *= -1.0;
+  const Mat3 rotation = u * svd.matrixV().transpose();
+
+  std::vector<Vec3> shape(uz(body.nodes.size()));
+  for (std::size_t k = 0; k < shape.size(); ++k) {
+    const Vec3& rest = model.rest_position[uz(body.nodes.begin) + k];
+    shape[k] = center + rotation * (rest - rest_center);
+  }
+  return shape;
+}
+
+void right_tangled_bodies(const Model& model, const State& state, double h, Workspace& workspace) {
+  const std::vector<Vec3>& x = state.position;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (workspace.tangled[b] == 0) continue;
+    const Body& body = model.bodies[b];
+    const std::vector<Vec3> goal = rest_shape_at(model, body, x);
+    const double w = frequency(model, body, h);
+    const Vec3 drift =
+        count_held(model, body) > 0 ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
+    parallel_for(body.nodes.size(), [&](Index k) {
+      const auto i = uz(body.nodes.begin + k);
+      if (model.inverse_mass[i] == 0.0) return;
+      Vec3 law = push_of_tets(model, workspace, body.nodes.begin + k);
+      if (!model.network_start.empty()) law += network_pull(model, x, body.nodes.begin + k);
+      workspace.force[i] -= law;
+      workspace.force[i] +=
+          model.mass[i] * w * (w * (goal[uz(k)] - x[i]) - 2.0 * (state.half_velocity[i] - drift));
+    });
+  }
+}
+
+}  // namespace sinew

@@ -1,0 +1,36 @@
+// Righting: what takes the place of the material while a body is tangled. docs/methods/righting.md.
+//
+// No energy of a material leads back to the rest shape from everywhere: a fold in which every tet
+// has its right side out is a rest state too. A body much of which is inside out (started so, or
+// torn through an obstacle) has left what the material describes, and is led back to where it
+// describes something again: every node is pulled to its place in the body's rest shape, moved
+// rigidly to fit the nodes best (shape matching, Mueller et al. 2005). That is a straight way from
+// any state to one without inverted tets.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/state.h"
+
+namespace sinew {
+
+// A body with volume terms is tangled when more than this share of its tets has v_t <= 0.
+inline constexpr double tangled_share = 0.05;
+
+// Fills workspace.tangled (bodies) from workspace.tet_volume; returns how many are.
+int find_tangled(const Model& model, Workspace& workspace);
+
+// The body's rest shape, moved rigidly: R X_i + c with the rotation R and the shift c that make
+// sum_i w_i |x_i - R X_i - c|^2 smallest. Weights: the masses; nodes whose motion is given weigh a
+// million times the rest together. [m] (nodes of the body)
+std::vector<Vec3> rest_shape_at(const Model& model, const Body& body, std::span<const Vec3> x);
+
+// Replaces, on the free nodes of the bodies in workspace.tangled, the forces of network and volume
+// in workspace.force by  m w^2 (g_i - x_i) - 2 m w (v_i - v),  critically damped: g_i from
+// rest_shape_at, v the body's mean velocity (0 where it is held), w eight times what a shear wave
+// takes to cross the body, at most 0.3 / h. h: length of the step [s].
+void right_tangled_bodies(const Model& model, const State& state, double h, Workspace& workspace);
+
+}  // namespace sinew

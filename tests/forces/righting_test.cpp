@@ -1,0 +1,70 @@
+#include "sinew/forces/righting.h"
+
+#include <gtest/gtest.h>
+
+#include "sinew/base/random.h"
+#include "sinew/forces/terms.h"
+#include "tests/support/models.h"
+
+namespace sinew {
+namespace {
+
+Model free_box() {
+  Model m = test::tissue_box(Material{}, {3, 3, 3});
+  m.gravity = Vec3::Zero();
+  finish(m);
+  return m;
+}
+
+TEST(Righting, ABodyIsTangledWhenManyTetsAreInsideOut) {
+  const Model m = free_box();
+  Workspace workspace(m);
+  State state = initial_state(m);
+  compute_forces(m, state, workspace);
+  EXPECT_EQ(find_tangled(m, workspace), 0);
+  state.position[0] = Vec3::Zero();  // a corner pushed through its own tets, not through others
+  compute_forces(m, state, workspace);
+  EXPECT_EQ(find_tangled(m, workspace), 0);
+  for (Vec3& x : state.position) x.z() = 0.0;
+  compute_forces(m, state, workspace);
+  EXPECT_EQ(find_tangled(m, workspace), 1);
+  EXPECT_EQ(workspace.tangled[0], 1);
+}
+
+TEST(Righting, TheRestShapeGoesWhereTheBodyIs) {
+  const Model m = free_box();
+  const Mat3 turn = Eigen::AngleAxisd(2.0, Vec3(1, 2, -1).normalized()).toRotationMatrix();
+  std::vector<Vec3> moved, mirrored;
+  for (const Vec3& X : m.rest_position) {
+    moved.push_back(turn * X + Vec3(1, 2, 3));
+    mirrored.push_back(Vec3(-X.x(), X.y(), X.z()));
+  }
+  const std::vector<Vec3> same = rest_shape_at(m, m.bodies[0], moved);
+  for (std::size_t i = 0; i < same.size(); ++i) EXPECT_LE((same[i] - moved[i]).norm(), 1e-12);
+  const std::vector<Vec3> back = rest_shape_at(m, m.bodies[0], mirrored);
+  Mat3 map = Mat3::Zero();
+  for (std::size_t i = 0; i < back.size(); ++i) map += back[i] * m.rest_position[i].transpose();
+  EXPECT_GT(map.determinant(), 0.0);  // a rotation, not the mirror image
+}
+
+TEST(Righting, TheForcesKeepMomentumAndAngularMomentum) {
+  const Model m = free_box();
+  Workspace workspace(m);
+  State state = initial_state(m);
+  for (std::size_t i = 0; i < state.position.size(); ++i) state.position[i] = random_point(i);
+  compute_forces(m, state, workspace);
+  ASSERT_EQ(find_tangled(m, workspace), 1);
+  right_tangled_bodies(m, state, 1e-4, workspace);
+  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  double size = 0.0;
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    force += workspace.force[i];
+    torque += state.position[i].cross(workspace.force[i]);
+    size += workspace.force[i].norm();
+  }
+  EXPECT_LE(force.norm(), 1e-9 * size);
+  EXPECT_LE(torque.norm(), 1e-9 * size);
+}
+
+}  // namespace
+}  // namespace sinew
