@@ -49,6 +49,13 @@ class ValidateTest(CliTest):
                              code=THRESHOLDS)
         self.assertIn("1 missed", run.stdout)
 
+    def test_a_law_that_cannot_have_a_material_has_failed_there(self):
+        self.copy_case(lambda name, text: text.replace("poisson=0.3", "poisson=0"))
+        run = self.run_sinew("validate", "--dir", "cases", "--quick", "--law", "calibrated",
+                             "--law", "lloyd")
+        self.assertIn("1 of 1 failed", run.stdout)
+        self.assertIn("cannot have Poisson's ratio 0", run.stdout)
+
     def test_mistakes(self):
         wrong = self.run_sinew("validate", "sheer", "--dir", CASES, code=USAGE)
         self.assertIn("there is no case 'sheer'; did you mean 'shear'?", wrong.stderr)
