@@ -292,13 +292,14 @@ double guard_frequency2(const Model& model, const Workspace& workspace) {
   const auto of_tet = [&](std::size_t t) {
     const double rest = model.rest_volume[t];
     const double ratio = workspace.tet_volume[t] / rest;
-    if (ratio >= guard_threshold + margin || ratio <= -margin) return 0.0;
+    const double stiffness = guard_stiffness(ratio - margin, guard_modulus(model, t));
+    if (stiffness == 0.0) return 0.0;
     const Tet& tet = model.tets[t];
     double sum = 0.0;
     for (std::size_t a = 0; a < 4; ++a) {
       sum += model.inverse_mass[uz(tet[a])] * workspace.tet_gradient[t][a].squaredNorm();
     }
-    return guard_factor * guard_modulus(model, t) / rest * sum;
+    return stiffness / rest * sum;
   };
   return parallel_reduce(
       model.tet_count(), 0.0,

@@ -24,6 +24,11 @@ constexpr double turn_per_load_step = 20.0 * 3.14159265358979 / 180.0;  // [rad]
 // instead of 21.
 constexpr double soft_volume = 30.0;
 constexpr int most_cuts = 12;  // a load step may become this often half as long
+constexpr int most_products =
+    500;  // for one direction; a truncated one leads downhill all the same
+// A load that no rest state can carry drives the body away: further than this many times its size,
+// Newton's method has lost it.
+constexpr double farthest = 10.0;
 
 double dot(const Field& a, const Field& b) {
   return parallel_sum(static_cast<Index>(a.size()),
@@ -267,7 +272,7 @@ int newton_direction(const Model& model, const Field& x, const Field& r0, double
   double rz = dot(r, z);
   const double goal = forcing * std::sqrt(dot(r, r));
   int products = 0;
-  while (products < 2000) {
+  while (products < most_products) {
     stiffness_damping_times(model, x, 1.0, 0.0, d, Tangent::full, workspace, q);
     ++products;
     const double curvature = dot(d, q);
@@ -319,6 +324,25 @@ bool line_search(const Model& model, const Field& f, const Field& p, const Homot
   return false;
 }
 
+bool has_run_away(const Model& model, const State& state) {
+  Vec3 low = Vec3::Constant(no_limit);
+  Vec3 high = -low;
+  for (const Vec3& X : model.rest_position) {
+    low = low.cwiseMin(X);
+    high = high.cwiseMax(X);
+  }
+  for (const Pin& pin : model.pins) {  // what pins carry off has not run away
+    for (const Index node : pin.nodes) {
+      low = low.cwiseMin(state.position[uz(node)]);
+      high = high.cwiseMax(state.position[uz(node)]);
+    }
+  }
+  const double reach = farthest * (high - low).maxCoeff();
+  const Vec3 middle = 0.5 * (low + high);
+  return std::any_of(state.position.begin(), state.position.end(),
+                     [&](const Vec3& x) { return !((x - middle).cwiseAbs().maxCoeff() <= reach); });
+}
+
 // Newton's method to rest. Returns false when it does not get there.
 template <typename Steps>
 bool newton(const Model& model, const ScalarPreconditioner& preconditioner, const Steps& steps,
@@ -335,6 +359,7 @@ bool newton(const Model& model, const ScalarPreconditioner& preconditioner, cons
       options.on_progress({steps.load_step, steps.load, report.newton, report.residual});
     }
     if (!(report.force < std::numeric_limits<double>::infinity())) return false;
+    if (has_run_away(model, state)) return false;
     if (report.force <= tolerance * scale) return true;
     if (options.stop != nullptr && options.stop->load()) {
       report.stopped = true;
@@ -399,15 +424,20 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
     if (rests) {
       done = next;
       if (report.stopped) break;
+      if (cuts > 0) {
+        --cuts;
+        length *= 2.0;
+      }
       continue;
     }
-    if (++cuts > most_cuts) {
+    if (++cuts > most_cuts || report.newton > options.most_newton) {
       throw Error(ErrorKind::diverged,
                   fmt::format("no rest state found: after {} Newton steps, at {:.3g} of the load, "
-                              "the forces on the free nodes are {:.3g} of what they carry",
+                              "the forces on the free nodes are {:.3g} of what they carry; there "
+                              "may be none under the whole load",
                               report.newton, next, report.residual),
-                  "bring pins and loads on more slowly, hold the body at more nodes, or take "
-                  "stepper = \"verlet\"");
+                  "make the load smaller, hold the body at more nodes, or take stepper = "
+                  "\"verlet\"");
     }
     state = before;
     gradual = true;

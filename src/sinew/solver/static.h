@@ -22,6 +22,7 @@ struct StaticProgress {
 struct StaticOptions {
   double tolerance = 1e-6;  // residual to reach [-]
   int max_newton = 100;     // Newton steps within a load step before it is cut in half
+  int most_newton = 500;    // in all; no load step is begun anew after them
   int min_load_steps = 1;   // pins that turn far get more of themselves (20 degrees each)
   const std::atomic<bool>* stop = nullptr;  // ends after the Newton step under way
   std::function<void(const StaticProgress&)> on_progress;
