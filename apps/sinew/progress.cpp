@@ -119,9 +119,10 @@ std::string format_table(const Summary& s) {
     row("rest", fmt::format("residual {:.2g} after {} Newton steps, {} products", s.residual,
                             grouped(s.newton_steps), grouped(s.products)));
   } else {
-    row("step",
-        fmt::format("{} ({}; stable up to {}), {} steps", scaled(s.dt, "s"),
-                    s.dt_auto ? "auto" : "given", scaled(s.stable_step, "s"), grouped(s.steps)));
+    // The stable step is the shortest of the run, the step the one taken last.
+    row("step", fmt::format("{} ({}; stable up to {}{}), {} steps", scaled(s.dt, "s"),
+                            s.dt_auto ? "auto" : "given", scaled(s.stable_step, "s"),
+                            s.stable_step < s.dt ? " when stiffest" : "", grouped(s.steps)));
   }
   row("wall time", fmt::format("{:.2f} s for {:.2f} s simulated: {:.2f}x real time", s.wall_seconds,
                                s.sim_seconds, s.realtime_factor()));

@@ -9,6 +9,7 @@
 #include "sinew/io/mesh_io.h"
 #include "sinew/mesh/doctor.h"
 #include "sinew/mesh/shapes.h"
+#include "tests/support/effort.h"
 
 namespace sinew {
 namespace {
@@ -79,6 +80,7 @@ TEST(Moduli, OfTheNetworkLawAreThoseAskedForOnAnyMesh) {
       expect_asked(mesh, poisson, TestKind::displacement);
     }
   }
+  if (test::sanitized) return;
   expect_asked(liver(), 0.45, TestKind::traction);
   expect_asked(liver(), 0.45, TestKind::displacement);
 }
@@ -101,6 +103,7 @@ TEST(Moduli, ShowHowFarOffTheClassicLawsAre) {
 TEST(Calibrate, MatchesYoungAndPoissonOnThisMesh) {
   for (const TetMesh& mesh : {box(Vec3(0.1, 0.1, 0.1), {4, 4, 4}, 0.3), sphere(0.05, 4)}) {
     for (const double poisson : {0.35, 0.45}) {
+      if (test::sanitized && poisson < 0.4) continue;
       Material material;
       material.law = Law::calibrated;
       material.young = 9e3;

@@ -8,6 +8,7 @@
 #include "sinew/solver/stable_step.h"
 #include "sinew/solver/verlet.h"
 #include "tests/scene/support.h"
+#include "tests/support/effort.h"
 
 namespace sinew {
 namespace {
@@ -50,7 +51,7 @@ TEST_P(Scenes, HoldAtTheirStableStep) {
   Workspace workspace(model);
   State state = initial_state(model);
   const double h = scene.safety * find_stable_step(model, state.position, workspace).step;
-  for (int i = 0; i < 50; ++i) verlet_step(model, h, state, workspace);
+  for (int i = 0; i < test::effort(50); ++i) verlet_step(model, h, state, workspace);
 }
 
 // Runs a scene at the step it gives, or at its stable step, and returns the state at `time`.

@@ -13,6 +13,7 @@
 #include "sinew/forces/righting.h"
 #include "sinew/forces/terms.h"
 #include "sinew/solver/stable_step.h"
+#include "tests/support/effort.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -196,12 +197,13 @@ TEST(Verlet, EnergyStaysBoundedWithoutDampingOver100000Steps) {
   const double h = 0.5 * find_stable_step(m, s.position, w).step;
   const double start = measure_energies(m, s, w).total();
   double worst_early = 0.0, worst_late = 0.0;
-  for (int i = 1; i <= 100'000; ++i) {
+  const int steps = test::effort(100'000);
+  for (int i = 1; i <= steps; ++i) {
     verlet_step(m, h, s, w);
     if (i % 100 != 0) continue;
     const double off = std::abs(measure_energies(m, s, w).total() - start) / start;
-    (i <= 10'000 ? worst_early : worst_late) =
-        std::max(i <= 10'000 ? worst_early : worst_late, off);
+    double& worst = i <= steps / 10 ? worst_early : worst_late;
+    worst = std::max(worst, off);
   }
   EXPECT_LT(worst_early, 0.2);
   EXPECT_LT(worst_late, 1.5 * worst_early);  // no drift
