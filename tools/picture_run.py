@@ -7,7 +7,7 @@ import meshio
 import numpy as np
 
 # Unit of the arrays that a run writes; others get none.
-UNITS = {"displacement": "m", "velocity": "m/s"}
+UNITS = {"displacement": "m", "velocity": "m/s", "pressure": "Pa"}
 
 
 class PictureError(Exception):
@@ -32,7 +32,8 @@ class Frame:
         for name, parts in mesh.cell_data.items():
             values = [a for block, a in zip(mesh.cells, parts) if block.type == "tetra"]
             values = np.concatenate(values).astype(float)
-            if values.ndim == 1:
+            if values.size == len(values):  # scalars, of whatever shape meshio gives them
+                values = values.reshape(-1)
                 self.arrays.setdefault(name, self._cells_to_nodes(values))
 
     def rest_points(self):

@@ -30,6 +30,10 @@ class PictureTest(CliTest):
         self.assertEqual((int.from_bytes(data[16:20], "big"), int.from_bytes(data[20:24], "big")),
                          (200, 120))
 
+    def test_quantities_of_tets_can_be_drawn(self):
+        run = self.picture("--size", "200x120", "--color", "volume_ratio")
+        self.assertEqual(run.returncode, 0, run.stderr)
+
     def test_mistakes_are_named(self):
         for args, words in ((("--frame", "99"), "no frame 99"),
                             (("--color", "warmth"), "no array 'warmth'; there are: ")):

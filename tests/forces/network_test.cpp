@@ -211,6 +211,27 @@ TetMesh with_sliver(Index seed) {
   return mesh;
 }
 
+TEST(Network, PressureIsMinusTheMeanStress) {
+  for (const Volume volume : {Volume::node, Volume::tet}) {
+    Material material;
+    material.volume = volume;
+    const Model m = irregular_box(material);
+    Workspace workspace(m);
+    State state = initial_state(m);
+    compute_forces(m, state, workspace);
+    for (const double p : measure_pressure(m, state.position, workspace)) {
+      EXPECT_NEAR(p, 0.0, 1e-9 * material.young);
+    }
+    const double strain = 1e-6;
+    state.position = affine(m.rest_position, (1.0 - strain) * Mat3::Identity());
+    compute_forces(m, state, workspace);
+    const double bulk = material.young / (3.0 * (1.0 - 2.0 * material.poisson));
+    for (const double p : measure_pressure(m, state.position, workspace)) {
+      EXPECT_NEAR(p, 3.0 * strain * bulk, 1e-4 * strain * bulk);
+    }
+  }
+}
+
 TEST(Network, HasNoSpuriousModeOnRandomMeshesWithSlivers) {
   int slivers = 0;
   const int seeds = test::effort(200);

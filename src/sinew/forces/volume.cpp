@@ -5,6 +5,7 @@
 #include <map>
 
 #include "sinew/base/parallel.h"
+#include "sinew/forces/network.h"
 #include "sinew/forces/volume_law.h"
 
 namespace sinew {
@@ -170,6 +171,21 @@ void compute_volume_pressures(const Model& model, std::span<const Vec3> x, Works
                                 mean_of_cells(model, t, workspace.cell_pressure) +
                                 guard_pressure(ratio, guard_modulus(model, t));
   });
+}
+
+std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x,
+                                     const Workspace& workspace) {
+  if (!model.has_volume) return {};
+  std::vector<double> pressure(model.tets.size());
+  parallel_for(model.tet_count(), [&](Index i) {
+    const auto t = uz(i);
+    const auto g = shape_gradients(model.rest_position, model.tets[t]);
+    Mat3 F = Mat3::Zero();
+    for (std::size_t a = 0; a < 4; ++a) F += x[uz(model.tets[t][a])] * g[a].transpose();
+    pressure[t] = -(model.tet_shear[t] / 3.0 * F.squaredNorm() +
+                    workspace.tet_pressure[t] * workspace.tet_volume[t] / model.rest_volume[t]);
+  });
+  return pressure;
 }
 
 double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace) {

@@ -45,6 +45,14 @@ inline Vec3 push_of_tets(const Model& model, const Workspace& workspace, Index n
   return -press_tets(model, workspace, workspace.tet_pressure, node);
 }
 
+// Pressure of every tet [Pa] (tets), > 0 where it is squeezed: minus the mean Kirchhoff stress,
+//   p = -(mu |F|^2 / 3 + s v/V),   F the tet's deformation gradient,
+// which at small strains is -K (v/V - 1) with the bulk modulus K. Of classic springs only what
+// their volume energy does; empty where the model has no volume terms. Expects what
+// compute_volume_pressures leaves at x.
+std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x,
+                                     const Workspace& workspace);
+
 // W [J]: zero at rest.
 double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace);
 

@@ -11,6 +11,7 @@
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/terms.h"
+#include "sinew/forces/volume.h"
 #include "sinew/io/file_io.h"
 #include "sinew/io/pvd.h"
 #include "sinew/io/vtu.h"
@@ -109,7 +110,7 @@ void Recorder::record(RunState& run, Workspace& workspace) {
   const Energies e = measure_energies(model_, run.state, workspace);  // also fills the forces
   run.frame_times.push_back(run.state.time);
   if (vtu_) {
-    write_frame(run, synchronous_velocity(model_, run.state, workspace));
+    write_frame(run, workspace);
     write_collection(run);
   }
 
@@ -139,8 +140,9 @@ void Recorder::record(RunState& run, Workspace& workspace) {
                       volume / rest, range.stretch, range.compress, run.contacts));
 }
 
-void Recorder::write_frame(const RunState& run, const std::vector<Vec3>& velocity) const {
+void Recorder::write_frame(const RunState& run, const Workspace& workspace) const {
   const std::vector<Vec3>& x = run.state.position;
+  const std::vector<Vec3> velocity = synchronous_velocity(model_, run.state, workspace);
   const auto nodes = uz(model_.body_node_count());
   std::vector<Vec3> displacement(nodes);
   std::vector<int> pinned(nodes);
@@ -158,6 +160,7 @@ void Recorder::write_frame(const RunState& run, const std::vector<Vec3>& velocit
     }
   }
   const std::vector<double> stretch = node_stretch(model_, x);
+  const std::vector<double> pressure = measure_pressure(model_, x, workspace);
 
   io::VtuData data;
   data.points = std::span(x).first(nodes);
@@ -167,6 +170,7 @@ void Recorder::write_frame(const RunState& run, const std::vector<Vec3>& velocit
   data.point_scalars = {{"stretch", stretch}};
   data.point_integers = {{"pinned", pinned}};
   data.cell_scalars = {{"volume_ratio", ratio}};
+  if (model_.has_volume) data.cell_scalars.push_back({"pressure", pressure});
   data.cell_integers = {{"region", model_.tet_region}, {"body", body}};
   data.time = run.state.time;
   data.encoded_cells = cells_;

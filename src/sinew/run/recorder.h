@@ -23,7 +23,7 @@ class Recorder {
   void record(RunState& run, Workspace& workspace);
 
  private:
-  void write_frame(const RunState& run, const std::vector<Vec3>& velocity) const;
+  void write_frame(const RunState& run, const Workspace& workspace) const;
   void write_collection(const RunState& run) const;
 
   const Model& model_;
