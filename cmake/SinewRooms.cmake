@@ -21,6 +21,15 @@ if(SINEW_SANITIZE)
   target_link_options(sinew_flags INTERFACE -fsanitize=${SINEW_SANITIZE})
 endif()
 
+# Sanitizer builds compile everything once more: with the heaviest headers precompiled that takes a
+# third less. The plain build goes without, so that a missing include is seen.
+function(sinew_precompile target)
+  if(SINEW_SANITIZE)
+    target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry> <algorithm>
+      <filesystem> <fmt/format.h> <functional> <map> <string> <vector> ${ARGN})
+  endif()
+endfunction()
+
 # sinew_room(NAME LEVEL [libraries...]): library sinew_NAME from src/sinew/NAME/*.cpp, linked to
 # every room of a lower level.
 set_property(GLOBAL PROPERTY SINEW_ROOMS "")
@@ -40,6 +49,7 @@ function(sinew_room name level)
     add_library(sinew_${name} STATIC ${sources})
     target_link_libraries(sinew_${name} PUBLIC sinew_flags ${below} ${ARGN})
     target_compile_definitions(sinew_${name} PRIVATE SINEW_VERSION="${PROJECT_VERSION}")
+    sinew_precompile(sinew_${name})
   else()
     add_library(sinew_${name} INTERFACE)
     target_link_libraries(sinew_${name} INTERFACE sinew_flags ${below} ${ARGN})

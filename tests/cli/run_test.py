@@ -124,9 +124,7 @@ class RunTest(CliTest):
         self.assertEqual(rest["status"], "finished")
 
     def test_killed_at_ten_random_moments(self):
-        start = time.monotonic()
         whole = self.summary(BEAM, *LONG, "-o", "whole")
-        length = time.monotonic() - start
         probes = (self.dir / "whole/probes.csv").read_bytes()
         seed = random.SystemRandom().randrange(10**6)
         print("seed", seed, file=sys.stderr)
@@ -135,7 +133,12 @@ class RunTest(CliTest):
         for i in range(10):
             folder = f"killed-{i}"
             run = self.start("-o", folder)
-            time.sleep(moments.uniform(0.02, 0.95) * length)
+            # After one of the hundred frames, somewhere on the way to the next; or early, before
+            # there is anything to go on with.
+            frame = self.dir / folder / f"frames/beam_{moments.randrange(0, 80):04}.vtu"
+            while i > 0 and not frame.exists() and run.poll() is None:
+                time.sleep(0.002)
+            time.sleep(moments.uniform(0.0, 0.02))
             killed += run.poll() is None
             run.kill()
             run.communicate()
