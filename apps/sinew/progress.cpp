@@ -118,6 +118,11 @@ std::string format_table(const Summary& s) {
   if (s.stepper == "static") {
     row("rest", fmt::format("residual {:.2g} after {} Newton steps, {} products", s.residual,
                             grouped(s.newton_steps), grouped(s.products)));
+  } else if (s.stepper == "implicit") {
+    row("step",
+        fmt::format("{} (implicit), {} steps, {} Newton steps, {} products, residual {:.2g}",
+                    scaled(s.dt, "s"), grouped(s.steps), grouped(s.newton_steps),
+                    grouped(s.products), s.residual));
   } else {
     // The stable step is the shortest of the run, the step the one taken last.
     row("step", fmt::format("{} ({}; stable up to {}{}), {} steps", scaled(s.dt, "s"),

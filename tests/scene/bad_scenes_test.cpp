@@ -82,7 +82,7 @@ const std::vector<Bad>& bad_scenes() {
        "  remedy: docs/scene-format.md says what 'path' takes"},
       {"stepper = { kind = \"verlet\" }\n" BEAM,
        "scene.toml:1:11: 'stepper' in the scene is a table; expected one of \"verlet\", "
-       "\"static\"\n"
+       "\"implicit\", \"static\"\n"
        "  remedy: the default is stepper = \"verlet\""},
       // --- ranges ---
       {BEAM "young = 0\n",
@@ -143,7 +143,7 @@ const std::vector<Bad>& bad_scenes() {
        "  remedy: docs/scene-format.md says what 'shape' takes"},
       {"stepper = \"euler\"\n" BEAM,
        "scene.toml:1:11: 'stepper' in the scene is \"euler\"; expected one of \"verlet\", "
-       "\"static\"\n"
+       "\"implicit\", \"static\"\n"
        "  remedy: the default is stepper = \"verlet\""},
       // --- what does not go together ---
       {"duration = 1\n",

@@ -15,6 +15,10 @@ namespace {
 // Steps between two looks at the stable step; a look costs about as much as two steps.
 constexpr std::int64_t watch_interval = 48;
 
+// What dt = "auto" takes at most with the implicit stepper [s]: stable at any length, but a step
+// shows nothing of swings that are faster.
+constexpr double longest_implicit = 1.0 / 60.0;
+
 // A number that rounding has left a little above an integer is that integer.
 std::int64_t round_up(double x) {
   return std::max<std::int64_t>(1, static_cast<std::int64_t>(std::ceil(x * (1.0 - 1e-12))));
@@ -40,15 +44,16 @@ double typed_step(double h) {
       Location{scene.file});
 }
 
-// A rest state is a minimum of the energy: what acts as a projection after the step is no part of
-// it.
+// Rest states and implicit steps are minima of an energy: what acts as a projection after the step
+// is no part of it.
 void refuse_projections(const Scene& scene, const Model& model) {
   const char* what = model.ground             ? "[ground]"
                      : !model.limited.empty() ? "stretch_limit and compress_limit"
                      : model.has_volume_limit ? "volume_limit"
                                               : nullptr;
   if (what == nullptr) return;
-  throw Error(ErrorKind::input, fmt::format("stepper = \"static\" does not know {}", what),
+  throw Error(ErrorKind::input,
+              fmt::format("stepper = \"{}\" does not know {}", scene.stepper, what),
               "take it out of the scene, or take stepper = \"verlet\"", Location{scene.file});
 }
 
@@ -84,9 +89,21 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
     frames_ = round_up(duration_ / interval_);
     return;
   }
+  if (scene.stepper == "implicit") {
+    refuse_projections(scene, model);
+    implicit_ = std::make_unique<ImplicitStepper>(model);
+    implicit_options_.scheme = scene.scheme == "sdirk2" ? Scheme::sdirk2 : Scheme::backward_euler;
+    implicit_options_.tolerance = tolerance_;
+  }
   if (!automatic_) interval_ = std::max(interval_, *scene.dt / scene.substeps);
   frames_ = round_up(duration_ / interval_);
   if (run.target_step > 0.0) return;  // goes on from a checkpoint
+  if (implicit_) {
+    run.target_step =
+        automatic_ ? std::min(interval_, longest_implicit) : *scene.dt / scene.substeps;
+    run.stable_step = run.smallest_stable_step = no_limit;
+    return;
+  }
 
   StableStep stable = find_stable_step(model, run.state.position, workspace_);
   run.stable_step = stable.step;
@@ -170,6 +187,15 @@ bool Stepping::rest_frame(RunState& run, const std::atomic<bool>* stop) {
 bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
   if (static_) return rest_frame(run, stop);
   if (run.steps_left == 0) begin_frame(run);
+  while (implicit_ && run.steps_left > 0) {
+    const ImplicitReport report = implicit_->step(run.step, implicit_options_, run.state);
+    --run.steps_left;
+    run.newton_steps += report.newton;
+    run.products += report.products;
+    run.residual = std::max(run.residual, report.residual);
+    run.step_reductions += report.cuts;
+    if (run.steps_left > 0 && stop != nullptr && stop->load()) return false;
+  }
   while (run.steps_left > 0) {
     if (run.steps_to_watch == 0) watch(run);
     const VerletReport report = verlet_step(model_, run.step, run.state, workspace_);

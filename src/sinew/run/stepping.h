@@ -11,6 +11,7 @@
 #include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
 #include "sinew/scene/scene.h"
+#include "sinew/solver/implicit.h"
 #include "sinew/solver/stable_step.h"
 #include "sinew/solver/static.h"
 
@@ -33,14 +34,14 @@ struct RunState {
   std::int64_t unmet_limits = 0;      // steps that ended with a limit violated
   std::int64_t righting_steps = 0;    // steps in which a tangled body was led back
   std::int64_t contacts = 0;          // nodes on the ground in the last step
-  std::int64_t newton_steps = 0;      // of the static stepper, in all
+  std::int64_t newton_steps = 0;      // of rest states and implicit steps, in all
   std::int64_t products = 0;          // Hessian products it took, in all
-  double residual = 0.0;              // of the last rest state found, see StaticReport [-]
-  double peak_stretch = 0.0;          // over the frames [-]
-  double peak_compress = 0.0;         // over the frames [-]
-  double start_energy = 0.0;          // total at the start [J]
-  double wall_seconds = 0.0;          // spent so far
-  std::vector<double> frame_times;    // of the frames written [s]
+  double residual = 0.0;       // of the last rest state, or the largest of the implicit steps [-]
+  double peak_stretch = 0.0;   // over the frames [-]
+  double peak_compress = 0.0;  // over the frames [-]
+  double start_energy = 0.0;   // total at the start [J]
+  double wall_seconds = 0.0;   // spent so far
+  std::vector<double> frame_times;  // of the frames written [s]
 };
 
 class Stepping {
@@ -72,8 +73,10 @@ class Stepping {
   double duration_;
   double interval_;  // between frames [s]
   std::int64_t frames_;
-  double tolerance_;                      // of rest states
-  std::unique_ptr<StaticSolver> static_;  // stepper = "static"
+  double tolerance_;                           // of rest states
+  std::unique_ptr<StaticSolver> static_;       // stepper = "static"
+  std::unique_ptr<ImplicitStepper> implicit_;  // stepper = "implicit"
+  ImplicitOptions implicit_options_;
 };
 
 }  // namespace sinew

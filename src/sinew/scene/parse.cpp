@@ -75,6 +75,7 @@ Scene parse_root(const DocValue& document) {
   root.text("look_for", scene.look_for);
   root.number("duration", scene.duration);
   if (const auto stepper = root.word("stepper")) scene.stepper = *stepper;
+  if (const auto scheme = root.word("scheme")) scene.scheme = *scheme;
   root.number("tolerance", scene.tolerance);
   if (!root.word("dt")) root.number("dt", scene.dt);
   root.integer("substeps", scene.substeps);

@@ -153,7 +153,8 @@ struct Scene {
   std::string title;               // one line
   std::string look_for;            // a sentence on what to look for
   double duration = 2.0;           // [s]
-  std::string stepper = "verlet";  // verlet, static
+  std::string stepper = "verlet";  // verlet, implicit, static
+  std::string scheme = "sdirk2";   // implicit: sdirk2, backward-euler
   double tolerance = 1e-6;         // static: residual of a rest state, as a share of the forces
   std::optional<double> dt;        // [s]; absent: "auto"
   int substeps = 1;                // the step taken is dt / substeps

@@ -27,7 +27,8 @@ struct ScalarPreconditioner::Factors {
   }
 };
 
-ScalarPreconditioner::ScalarPreconditioner(const Model& model, Index direct_limit)
+ScalarPreconditioner::ScalarPreconditioner(const Model& model, double inertia, double rate,
+                                           Index direct_limit)
     : factors_(std::make_unique<Factors>()) {
   Factors& f = *factors_;
   f.row.assign(model.rest_position.size(), -1);
@@ -36,7 +37,7 @@ ScalarPreconditioner::ScalarPreconditioner(const Model& model, Index direct_limi
     f.row[uz(i)] = static_cast<Index>(f.free.size());
     f.free.push_back(i);
   }
-  f.held = f.free.size() < f.row.size();
+  f.held = f.free.size() < f.row.size() || inertia > 0.0;
   using Triplets = std::vector<Eigen::Triplet<double>>;
   Triplets entries;
   const auto add = [&](Index i, Index j, double k) {  // k (u_i - u_j) in the rows of i and j
@@ -59,8 +60,12 @@ ScalarPreconditioner::ScalarPreconditioner(const Model& model, Index direct_limi
     }
   }
   for (Index s = 0; s < model.spring_count(); ++s) {
-    const double k = model.stiffness[uz(s)];
+    const double k = model.stiffness[uz(s)] + rate * model.damping[uz(s)];
     if (k > 0.0) add(model.springs[uz(s)][0], model.springs[uz(s)][1], k);
+  }
+  for (const Index i : f.free) {
+    const double weight = (inertia + rate * model.drag[uz(i)]) * model.mass[uz(i)];
+    if (weight > 0.0) entries.emplace_back(f.row[uz(i)], i, weight);
   }
   const auto rows = static_cast<Eigen::Index>(f.free.size());
   f.coupling.resize(rows, model.node_count());

@@ -65,7 +65,6 @@ class StaticSolver {
   Workspace& workspace() { return workspace_; }
 
  private:
-  struct Loads;
   const Model& model_;
   Workspace workspace_;
   ScalarPreconditioner preconditioner_;

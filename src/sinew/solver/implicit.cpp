@@ -1,0 +1,150 @@
+#include "sinew/solver/implicit.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/base/error.h"
+#include "sinew/base/parallel.h"
+#include "sinew/forces/loads.h"
+#include "sinew/forces/terms.h"
+
+namespace sinew {
+namespace {
+
+constexpr int most_cuts = 10;
+
+// a x + b y of all nodes.
+Field blend(double a, const Field& x, double b, const Field& y) {
+  Field out(x.size());
+  parallel_for(static_cast<Index>(x.size()),
+               [&](Index i) { out[uz(i)] = a * x[uz(i)] + b * y[uz(i)]; });
+  return out;
+}
+
+// Where the pinned nodes are at state.time.
+void move_pins(const Model& model, State& state) {
+  for (const Pin& pin : model.pins) {
+    for (const Index node : pin.nodes) {
+      state.position[uz(node)] = pin.path.at(state.time, model.rest_position[uz(node)]);
+    }
+  }
+}
+
+// What loads and pins put in over the step: their forces at its end along the way.
+double work_of_the_outside(const Model& model, const Field& before, const State& state,
+                           const Workspace& workspace) {
+  double work = 0.0;
+  for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& force) {
+    if (model.inverse_mass[uz(node)] > 0.0) {
+      work += force.dot(state.position[uz(node)] - before[uz(node)]);
+    }
+  });
+  for (const Pin& pin : model.pins) {
+    for (const Index node : pin.nodes) {
+      work -= workspace.force[uz(node)].dot(state.position[uz(node)] - before[uz(node)]);
+    }
+  }
+  return work;
+}
+
+}  // namespace
+
+ImplicitStepper::ImplicitStepper(const Model& model) : model_(model), workspace_(model) {}
+
+// Backward Euler over h from the positions `from` with `velocity`, dashpots in their directions at
+// state.position; loads and pins as they are at state.time. Moves the state's positions and sets
+// its velocities.
+bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
+                            const ImplicitOptions& options, State& state, ImplicitReport& report) {
+  const double inertia = 1.0 / (h * h);
+  if (!preconditioner_ || std::abs(inertia_ - inertia) > 1e-9 * inertia) {
+    preconditioner_ = std::make_unique<ScalarPreconditioner>(model_, inertia, 1.0 / h);
+    inertia_ = inertia;
+  }
+  const Field lag = state.position;
+  const Field inertial = blend(1.0, from, h, velocity);
+  std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
+  const Objective objective{model_, nullptr, 0.0, inertia, &inertial, 1.0 / h, &from, &lag};
+  // From where it stands, or on as it moves: what costs less.
+  move_pins(model_, state);
+  const double standing = objective_value(objective, state, workspace_);
+  const Field stand = state.position;
+  state.position = inertial;
+  move_pins(model_, state);
+  if (!(objective_value(objective, state, workspace_) < standing)) state.position = stand;
+
+  const NewtonReport newton =
+      minimise(objective, *preconditioner_, {options.tolerance, options.max_newton, nullptr, {}},
+               workspace_, state);
+  report.newton += newton.newton;
+  report.products += newton.products;
+  report.residual = std::max(report.residual, newton.residual);
+  state.half_velocity = blend(1.0 / h, state.position, -1.0 / h, from);
+  return newton.rests;
+}
+
+bool ImplicitStepper::try_step(double h, const ImplicitOptions& options, State& state,
+                               ImplicitReport& report) {
+  const Field x = state.position;
+  const Field v = state.half_velocity;
+  const double time = state.time;
+  state.last_step = 0.0;  // the velocity is that of the time
+  // Heat of dashpots and drag by the scheme's own weights, work along the way from `before`.
+  const auto account = [&](const Field& before, double weight, State& s) {
+    s.energy.dissipated += weight * damping_power(model_, before, s.half_velocity);
+    s.energy.work_in += work_of_the_outside(model_, before, s, workspace_);
+  };
+  if (options.scheme == Scheme::sdirk2) {
+    const double g = 1.0 - std::sqrt(0.5);
+    state.time = time + g * h;
+    if (!solve(x, v, g * h, options, state, report)) return false;
+    const Field v1 = state.half_velocity;
+    account(x, (1.0 - g) * h, state);
+    const Field x1 = state.position;
+    state.time = time + h;
+    if (!solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
+               g * h, options, state, report)) {
+      return false;
+    }
+    account(x1, g * h, state);
+  } else {
+    state.time = time + h;
+    if (!solve(x, v, h, options, state, report)) return false;
+    account(x, h, state);
+  }
+  ++state.step;
+  return true;
+}
+
+ImplicitReport ImplicitStepper::step(double h, const ImplicitOptions& options, State& state) {
+  ImplicitReport report;
+  const State start = state;
+  double length = h;
+  int parts = 1;  // of the step, all of this length
+  int done = 0;
+  for (int cuts = 0; done < parts;) {
+    const State before = state;
+    if (try_step(length, options, state, report)) {
+      ++done;
+      continue;
+    }
+    state = before;  // report keeps what the attempt took
+    if (++cuts > most_cuts) {
+      throw Error(
+          ErrorKind::diverged,
+          fmt::format("the implicit step from t = {:.6g} s was cut {} times and still found "
+                      "no equilibrium of forces",
+                      start.time, most_cuts),
+          "take a smaller dt, a larger tolerance, or slower pins and loads");
+    }
+    ++report.cuts;
+    length *= 0.5;
+    parts = 2 * (parts - done);
+    done = 0;
+  }
+  return report;
+}
+
+}  // namespace sinew

@@ -1,0 +1,61 @@
+// Implicit steps: stable at any length. docs/methods/implicit.md.
+#pragma once
+
+#include <memory>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/state.h"
+#include "sinew/solver/newton.h"
+
+namespace sinew {
+
+enum class Scheme {
+  backward_euler,  // first order, damps every swing
+  sdirk2           // second order, damps hardly, two solves a step
+};
+
+struct ImplicitOptions {
+  Scheme scheme = Scheme::sdirk2;
+  double tolerance = 1e-6;  // see NewtonReport::residual
+  int max_newton = 50;      // Newton steps before the step is cut in half
+};
+
+struct ImplicitReport {
+  int newton = 0;         // Newton steps
+  int products = 0;       // Hessian products
+  int cuts = 0;           // steps that were cut in half
+  double residual = 0.0;  // the largest that was left [-]
+};
+
+class ImplicitStepper {
+ public:
+  explicit ImplicitStepper(const Model& model);
+
+  // Advances the state by h [s] > 0. Backward Euler: x is the minimum of
+  //
+  //   |x - y|_M^2 / (2 h^2) + E(x) + (x - x_n) . C (x - x_n) / (2 h),   y = x_n + h v_n,
+  //
+  // E all energies with pins, loads and obstacles of the time t + h, C the dashpots in their
+  // directions at x_n; then v = (x - x_n) / h (Martin et al. 2011). SDIRK2 (Alexander 1977) takes
+  // two such steps of g h, g = 1 - sqrt(1/2): the first from x_n and v_n gives v_1, the second
+  // starts from x_n + (1 - g) h v_1 and v_n + (1 - g)/g (v_1 - v_n). Both schemes are L-stable.
+  // Dashpots and drag see the velocity at the end of the (part) step.
+  //
+  // Where Newton's method does not arrive, the step is taken in two halves, and so on. Throws
+  // Error(diverged) where ten halvings are not enough.
+  ImplicitReport step(double h, const ImplicitOptions& options, State& state);
+
+  Workspace& workspace() { return workspace_; }
+
+ private:
+  bool try_step(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
+  bool solve(const Field& from, const Field& velocity, double h, const ImplicitOptions& options,
+             State& state, ImplicitReport& report);
+
+  const Model& model_;
+  Workspace workspace_;
+  double inertia_ = 0.0;  // what preconditioner_ was made for
+  std::unique_ptr<ScalarPreconditioner> preconditioner_;
+};
+
+}  // namespace sinew

@@ -1,0 +1,87 @@
+// Newton's method with conjugate gradients and a line search: what rest states and implicit steps
+// have in common. docs/methods/static.md, docs/methods/implicit.md.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <vector>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/state.h"
+#include "sinew/solver/scalar_preconditioner.h"
+
+namespace sinew {
+
+using Field = std::vector<Vec3>;  // one vector per node
+
+// What is minimised over the positions x of the free nodes: the potential energy of the model at
+// state.time, plus
+//   share sum_i f_i . (x_i - X_i)            a dead force that is taken away in load steps
+//   inertia/2 sum_i m_i |x_i - y_i|^2        of an implicit step, inertia = 1/h^2
+//   rate/2 (x - from) . C (x - from)         dashpots and drag over that step, rate = 1/h,
+//                                            with the directions of the dashpots at `lag`
+struct Objective {
+  const Model& model;
+  const Field* dead_force = nullptr;  // [N]
+  double share = 0.0;                 // [-]
+  double inertia = 0.0;               // [1/s2]
+  const Field* inertial = nullptr;    // y [m]
+  double rate = 0.0;                  // [1/s]
+  const Field* from = nullptr;        // [m]
+  const Field* lag = nullptr;         // [m]
+};
+
+// Its value [J]. state.half_velocity has to be zero here and below.
+double objective_value(const Objective& objective, const State& state, Workspace& workspace);
+
+// Minus its gradient on the free nodes, 0 on the others [N]. Leaves in workspace.force what the
+// model alone pulls all nodes with.
+Field objective_force(const Objective& objective, const State& state, Workspace& workspace);
+
+// v . C v of dashpots, in their directions at x, and drag [W], v of all nodes.
+double damping_power(const Model& model, const Field& x, const Field& v);
+
+// z = P^-1 r with  P^-1 = A^-1 - A^-1 B^T D B A^-1:  A the scalar Laplacian, B the volumes' rates,
+// D = (V/kappa + 3 V/mu)^-1. It is the inverse of A + B^T (kappa/V) B with 3 V/mu in the place of
+// B A^-1 B^T (Woodbury); because (div u)^2 <= 3 |grad u|^2 that place is filled from above, and
+// P^-1 stays positive. Without it the iterations grow as sqrt(kappa/mu). Expects what
+// prepare_stiffness leaves in the workspace.
+void precondition(const Model& model, const ScalarPreconditioner& laplacian, const Field& r,
+                  Workspace& workspace, Field& z);
+
+struct NewtonProgress {
+  int newton = 0;         // steps so far
+  double residual = 0.0;  // |force| / scale [-]
+};
+
+struct NewtonOptions {
+  double tolerance = 1e-6;  // residual to reach [-]
+  int most = 100;           // Newton steps
+  const std::atomic<bool>* stop = nullptr;
+  std::function<void(const NewtonProgress&)> on_progress;
+};
+
+struct NewtonReport {
+  bool rests = false;     // the residual was reached
+  bool stopped = false;   // by options.stop
+  int newton = 0;         // steps taken
+  int products = 0;       // Hessian products taken by the conjugate gradients
+  double force = 0.0;     // |force| left [N]
+  double residual = 0.0;  // as a share of what the body carries [-]
+};
+
+// Moves the free nodes of the state to the minimum near where they are.
+//
+// The residual is |force| over the norm of what is carried: the largest of the outer forces and the
+// inertial ones on the free nodes, the model's forces on the others, and 1e-5 of what the material
+// pulls with at a strain of one.
+NewtonReport minimise(const Objective& objective, const ScalarPreconditioner& preconditioner,
+                      const NewtonOptions& options, Workspace& workspace, State& state);
+
+// --- sums over nodes, in an order that no thread count changes ---
+
+double dot(const Field& a, const Field& b);
+void add(Field& x, double a, const Field& y);  // x += a y
+void keep_free(const Model& model, Field& f);  // 0 on the nodes whose motion is given
+
+}  // namespace sinew

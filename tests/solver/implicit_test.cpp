@@ -1,0 +1,198 @@
+#include "sinew/solver/implicit.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/terms.h"
+#include "sinew/solver/stable_step.h"
+#include "sinew/solver/static.h"
+#include "sinew/solver/verlet.h"
+#include "tests/support/effort.h"
+#include "tests/support/models.h"
+
+namespace sinew {
+namespace {
+
+using test::point_masses;
+using test::tissue_box;
+
+State run(const Model& m, double h, int steps, Scheme scheme) {
+  State s = initial_state(m);
+  ImplicitStepper stepper(m);
+  for (int i = 0; i < steps; ++i) stepper.step(h, {.scheme = scheme}, s);
+  return s;
+}
+
+// 2 kg on a spring of 50 N/m that is at rest at 1 m: omega = 5 rad/s. Starts stretched by 0.1 m.
+Model oscillator(double damping = 0.0) {
+  Model m = point_masses({{Vec3(0, 0, 0), 0.0}, {Vec3(1.1, 0, 0), 2.0}});
+  add_attachment(m, 0, 1, 50.0, damping, 1.0);
+  finish(m);
+  return m;
+}
+
+TEST(Implicit, BackwardEulerShrinksASwingByItsFactor) {
+  const double h = 0.05;
+  const State s = run(oscillator(), h, 40, Scheme::backward_euler);
+  const double omega = 5.0;
+  // (1 + i omega h)^-1 a step, on x + i v / omega
+  const double shrink = std::pow(1.0 + omega * omega * h * h, -20.0);
+  EXPECT_NEAR(std::hypot(s.position[1].x() - 1.0, s.half_velocity[1].x() / omega), 0.1 * shrink,
+              1e-6);
+}
+
+TEST(Implicit, Sdirk2IsOfSecondOrder) {
+  const double t = 1.0, omega = 5.0;
+  const auto error = [&](double damping, int steps) {
+    const State s = run(oscillator(damping), t / steps, steps, Scheme::sdirk2);
+    const double zeta = damping / (2.0 * 2.0 * omega);
+    const double swing = omega * std::sqrt(1.0 - zeta * zeta);
+    const double x = 0.1 * std::exp(-zeta * omega * t) *
+                     (std::cos(swing * t) + zeta * omega / swing * std::sin(swing * t));
+    return std::abs(s.position[1].x() - 1.0 - x);
+  };
+  for (const double damping : {0.0, 4.0}) {
+    EXPECT_NEAR(error(damping, 400) / error(damping, 800), 4.0, 0.2) << damping;
+  }
+}
+
+TEST(Implicit, Sdirk2KeepsASwing) {  // under 5 % in ten periods of 40 steps
+  const double period = 2.0 * std::numbers::pi / 5.0;
+  const State s = run(oscillator(), period / 40, 400, Scheme::sdirk2);
+  const double amplitude = std::hypot(s.position[1].x() - 1.0, s.half_velocity[1].x() / 5.0);
+  EXPECT_NEAR(amplitude, 0.1 * (1.0 - 0.00089), 1e-6);
+}
+
+TEST(Implicit, AFreeFallIsThatOfTheScheme) {
+  Model m = tissue_box(Material{}, {2, 2, 2});
+  finish(m);
+  const int steps = 10;
+  const double h = 0.1;
+  const State s = run(m, h, steps, Scheme::backward_euler);
+  for (std::size_t i = 0; i < s.position.size(); ++i) {
+    const Vec3 way = s.position[i] - m.rest_position[i];
+    EXPECT_NEAR(way.y(), -9.81 * h * h * steps * (steps + 1) / 2, 1e-6);
+    EXPECT_NEAR(way.x(), 0.0, 1e-6);
+    EXPECT_NEAR(s.half_velocity[i].y(), -9.81 * h * steps, 1e-5);
+  }
+}
+
+TEST(Implicit, KeepsMomentumAndAngularMomentumOfAFreeBody) {
+  Material material;
+  material.young = 1e4;
+  Model m = tissue_box(material, {2, 2, 2});
+  m.gravity = Vec3::Zero();
+  finish(m);
+  State s = initial_state(m);
+  for (std::size_t i = 0; i < s.position.size(); ++i) {
+    s.half_velocity[i] = Vec3(0.3, 0, 0) + Vec3(0, 0, 5).cross(s.position[i]);
+    s.position[i] *= 1.1;
+  }
+  const auto momenta = [&] {
+    Vec3 p = Vec3::Zero(), l = Vec3::Zero();
+    for (std::size_t i = 0; i < s.position.size(); ++i) {
+      p += m.mass[i] * s.half_velocity[i];
+      l += m.mass[i] * s.position[i].cross(s.half_velocity[i]);
+    }
+    return std::pair(p, l);
+  };
+  const auto [p, l] = momenta();
+  ImplicitStepper stepper(m);
+  for (int i = 0; i < 20; ++i) {
+    stepper.step(0.005, {.scheme = Scheme::backward_euler, .tolerance = 1e-10}, s);
+  }
+  const auto [p_end, l_end] = momenta();
+  EXPECT_LE((p_end - p).norm(), 1e-8 * p.norm());
+  // Backward Euler turns along tangents: the spin loses to it what its steps are too long.
+  EXPECT_LE((l_end - l).norm(), 0.1 * l.norm());
+}
+
+TEST(Implicit, ShortStepsAreVerlets) {
+  for (const Law law : {Law::neo_hookean, Law::lloyd}) {
+    Material material;
+    material.law = law;
+    material.young = 1e4;
+    material.damping_ratio = 0.2;
+    Model m = tissue_box(material, {3, 3, 3});
+    m.pins.push_back({"top", test::nodes_at(m, 1, 0.05), {}});
+    finish(m);
+    State verlet = initial_state(m);
+    Workspace workspace(m);
+    const double t = 0.1;
+    for (int i = 0; i < 2000; ++i) verlet_step(m, t / 2000, verlet, workspace);
+    double error[2];
+    for (int k = 0; k < 2; ++k) {
+      const int steps = k == 0 ? 20 : 40;
+      const State s = run(m, t / steps, steps, Scheme::sdirk2);
+      error[k] = 0.0;
+      for (std::size_t i = 0; i < s.position.size(); ++i) {
+        error[k] = std::max(error[k], (s.position[i] - verlet.position[i]).norm());
+      }
+    }
+    EXPECT_LT(error[1], 0.4 * error[0]);
+    EXPECT_LT(error[1], 1e-3);
+  }
+}
+
+// The third wall of the talk: any stiffness at 1/60 s, and the shape is the right one.
+TEST(Implicit, ComesToTheRestStateAtAnyStiffness) {
+  for (const double young : {1e4, 1e6, 1e9}) {
+    for (const double poisson : {0.3, 0.49}) {
+      if (test::sanitized && poisson > 0.4) continue;
+      Material material;
+      material.young = young;
+      material.poisson = poisson;
+      material.drag = 20.0;
+      Model m = tissue_box(material, {2, 2, 4}, Vec3(0.1, 0.1, 0.3));
+      m.pins.push_back({"wall", test::nodes_at(m, 2, -0.15), {}});
+      finish(m);
+      State rest = initial_state(m);
+      StaticSolver(m).solve(1.0, {}, rest);
+      const State s = run(m, 1.0 / 60.0, 200, Scheme::backward_euler);
+      double sag = 0.0, off = 0.0;
+      for (std::size_t i = 0; i < s.position.size(); ++i) {
+        sag = std::max(sag, (rest.position[i] - m.rest_position[i]).norm());
+        off = std::max(off, (s.position[i] - rest.position[i]).norm());
+      }
+      EXPECT_LE(off, 0.01 * sag) << "E " << young << " nu " << poisson;
+    }
+  }
+}
+
+TEST(Implicit, EnergyAccountBalancesUpToTheScheme) {
+  Material material;
+  material.young = 2e4;
+  material.damping_ratio = 0.1;
+  Model m = tissue_box(material, {2, 2, 2});
+  m.pins.push_back({"top", test::nodes_at(m, 1, 0.05), {}});
+  finish(m);
+  const auto drift = [&](int steps) {
+    const State s = run(m, 0.2 / steps, steps, Scheme::sdirk2);
+    Workspace workspace(m);
+    const Energies e = measure_energies(m, s, workspace);
+    EXPECT_GT(e.dissipated, 0.0);
+    return std::abs(e.total()) / e.dissipated;
+  };
+  const double coarse = drift(50);
+  const double fine = drift(400);
+  EXPECT_LT(fine, 0.3 * coarse);
+  EXPECT_LT(fine, 0.05);
+}
+
+TEST(Implicit, SameBitsAtAnyThreadCount) {
+  Model m = tissue_box(Material{}, {6, 6, 6});
+  m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
+  finish(m);
+  std::vector<std::uint64_t> hashes;
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    hashes.push_back(run(m, 0.01, 5, Scheme::sdirk2).hash());
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+}
+
+}  // namespace
+}  // namespace sinew
