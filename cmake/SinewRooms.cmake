@@ -26,7 +26,7 @@ endif()
 function(sinew_precompile target)
   if(SINEW_SANITIZE)
     target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry> <algorithm>
-      <filesystem> <fmt/format.h> <functional> <map> <string> <vector> ${ARGN})
+      <fmt/format.h> <functional> <map> <string> <vector> ${ARGN})
   endif()
 endfunction()
 

@@ -112,6 +112,7 @@ TEST(Implicit, KeepsMomentumAndAngularMomentumOfAFreeBody) {
 
 TEST(Implicit, ShortStepsAreVerlets) {
   for (const Law law : {Law::neo_hookean, Law::lloyd}) {
+    if (test::sanitized && law == Law::lloyd) continue;
     Material material;
     material.law = law;
     material.young = 1e4;
@@ -141,7 +142,7 @@ TEST(Implicit, ShortStepsAreVerlets) {
 TEST(Implicit, ComesToTheRestStateAtAnyStiffness) {
   for (const double young : {1e4, 1e6, 1e9}) {
     for (const double poisson : {0.3, 0.49}) {
-      if (test::sanitized && poisson > 0.4) continue;
+      if (test::sanitized && (poisson > 0.4 || young < 1e9)) continue;
       Material material;
       material.young = young;
       material.poisson = poisson;
@@ -189,7 +190,7 @@ TEST(Implicit, SameBitsAtAnyThreadCount) {
   std::vector<std::uint64_t> hashes;
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
-    hashes.push_back(run(m, 0.01, 5, Scheme::sdirk2).hash());
+    hashes.push_back(run(m, 0.01, test::sanitized ? 1 : 4, Scheme::sdirk2).hash());
   }
   EXPECT_EQ(hashes[0], hashes[1]);
 }
