@@ -70,6 +70,18 @@ void add_obstacle_stiffness_times(const Model& model, std::span<const Vec3> x,
   });
 }
 
+void add_obstacle_stiffness(const Model& model, const Vec3& x, std::span<const Vec3> centers,
+                            Index node, Mat3& block) {
+  if (uz(node) >= model.surface_share.size() || model.surface_share[uz(node)] == 0.0) return;
+  for (std::size_t c = 0; c < centers.size(); ++c) {
+    const Obstacle& o = model.obstacles[c];
+    for (int axis = 0; axis < 3; ++axis) {
+      block.col(axis) += obstacle_stiffness_times(
+          x - centers[c], o.radius, o.stiffness * model.surface_share[uz(node)], Vec3::Unit(axis));
+    }
+  }
+}
+
 std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const Vec3> x,
                                             double time) {
   std::vector<ObstacleReading> readings;

@@ -62,6 +62,10 @@ void add_obstacle_stiffness_times(const Model& model, std::span<const Vec3> x,
                                   std::span<const Vec3> centers, double a, std::span<const Vec3> u,
                                   bool only_stiffening, std::span<Vec3> out);
 
+// block += H of one node at x, with the obstacles at `centers` [N/m].
+void add_obstacle_stiffness(const Model& model, const Vec3& x, std::span<const Vec3> centers,
+                            Index node, Mat3& block);
+
 // The most that obstacles can stiffen a node of the surface, sum of k A [N/m]; elsewhere 0. A step
 // that is stable with it is stable whichever nodes the obstacles come to touch.
 inline double largest_obstacle_stiffness(const Model& model, Index node) {

@@ -64,4 +64,18 @@ inline Vec3 dashpot_times(const Vec3& x_ij, double c, const Vec3& u_ij) {
   return (c * x_ij.dot(u_ij) / length2) * x_ij;
 }
 
+// The two as matrices: what they multiply u_ij with.
+inline Mat3 spring_stiffness_block(const Vec3& x_ij, double k, double l0) {
+  const double length2 = x_ij.squaredNorm();
+  if (length2 == 0.0) return k * Mat3::Identity();
+  const double transverse = 1.0 - l0 / std::sqrt(length2);
+  return k * transverse * Mat3::Identity() +
+         (k * (1.0 - transverse) / length2 * x_ij) * x_ij.transpose();
+}
+inline Mat3 dashpot_block(const Vec3& x_ij, double c) {
+  const double length2 = x_ij.squaredNorm();
+  if (length2 == 0.0) return c * Mat3::Identity();
+  return (c / length2 * x_ij) * x_ij.transpose();
+}
+
 }  // namespace sinew

@@ -210,6 +210,11 @@ double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& wor
   return of_tets + of_cells;
 }
 
+double tet_volume_stiffness(const Model& model, const Workspace& workspace, std::size_t tet) {
+  const double ratio = workspace.tet_volume[tet] / model.rest_volume[tet];
+  return model.tet_bulk[tet] + guard_stiffness(ratio, guard_modulus(model, tet));
+}
+
 void compute_volume_force_change(const Model& model, std::span<const Vec3> x, double a,
                                  std::span<const Vec3> u, Workspace& workspace) {
   // First the rate of every volume, then that of the pressures, then that of the forces.
@@ -226,10 +231,8 @@ void compute_volume_force_change(const Model& model, std::span<const Vec3> x, do
     const auto t = uz(i);
     const Tet& tet = model.tets[t];
     const double rest = model.rest_volume[t];
-    double stiffness = model.tet_bulk[t];
-    stiffness += guard_stiffness(workspace.tet_volume[t] / rest, guard_modulus(model, t));
-    const double rate =
-        stiffness * workspace.tet_rate[t] / rest + mean_of_cells(model, t, workspace.cell_rate);
+    const double rate = tet_volume_stiffness(model, workspace, t) * workspace.tet_rate[t] / rest +
+                        mean_of_cells(model, t, workspace.cell_rate);
     const double pressure = workspace.tet_pressure[t];
     const Vec3& x0 = x[uz(tet[0])];
     const Vec3& u0 = u[uz(tet[0])];

@@ -79,6 +79,10 @@ void rate_cells(const Model& model, std::span<const Vec3> u, Workspace& workspac
 // sum_c weight_c V_c(x).
 void press_cells(const Model& model, std::span<const double> weight, Workspace& workspace);
 
+// V d2W/dv2 of a tet's own energies, its volume's and the guard's [Pa]. Expects
+// workspace.tet_volume.
+double tet_volume_stiffness(const Model& model, const Workspace& workspace, std::size_t tet);
+
 // Sum, for a node in the fixed order of its tets, of what workspace.tet_force holds.
 inline Vec3 gather_tets(const Model& model, const Workspace& workspace, Index node) {
   Vec3 sum = Vec3::Zero();

@@ -51,7 +51,8 @@ double work_of_the_outside(const Model& model, const Field& before, const State&
 
 }  // namespace
 
-ImplicitStepper::ImplicitStepper(const Model& model) : model_(model), workspace_(model) {}
+ImplicitStepper::ImplicitStepper(const Model& model)
+    : model_(model), workspace_(model), linear_(model) {}
 
 // Backward Euler over h from the positions `from` with `velocity`, dashpots in their directions at
 // state.position; loads and pins as they are at state.time. Moves the state's positions and sets
@@ -59,10 +60,6 @@ ImplicitStepper::ImplicitStepper(const Model& model) : model_(model), workspace_
 bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
                             const ImplicitOptions& options, State& state, ImplicitReport& report) {
   const double inertia = 1.0 / (h * h);
-  if (!preconditioner_ || std::abs(inertia_ - inertia) > 1e-9 * inertia) {
-    preconditioner_ = std::make_unique<ScalarPreconditioner>(model_, inertia, 1.0 / h);
-    inertia_ = inertia;
-  }
   const Field lag = state.position;
   const Field inertial = blend(1.0, from, h, velocity);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
@@ -75,9 +72,8 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   move_pins(model_, state);
   if (!(objective_value(objective, state, workspace_) < standing)) state.position = stand;
 
-  const NewtonReport newton =
-      minimise(objective, *preconditioner_, {options.tolerance, options.max_newton, nullptr, {}},
-               workspace_, state);
+  const NewtonReport newton = minimise(
+      objective, linear_, {options.tolerance, options.max_newton, nullptr, {}}, workspace_, state);
   report.newton += newton.newton;
   report.products += newton.products;
   report.residual = std::max(report.residual, newton.residual);

@@ -1,11 +1,9 @@
 // Implicit steps: stable at any length. docs/methods/implicit.md.
 #pragma once
 
-#include <memory>
-
 #include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
-#include "sinew/solver/newton.h"
+#include "sinew/solver/linear_solver.h"
 
 namespace sinew {
 
@@ -54,8 +52,7 @@ class ImplicitStepper {
 
   const Model& model_;
   Workspace workspace_;
-  double inertia_ = 0.0;  // what preconditioner_ was made for
-  std::unique_ptr<ScalarPreconditioner> preconditioner_;
+  LinearSolver linear_;
 };
 
 }  // namespace sinew

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
-#include "sinew/forces/volume.h"
+#include "sinew/solver/linear_solver.h"
 
 namespace sinew {
 
@@ -43,20 +44,6 @@ double damping_power(const Model& model, const Field& x, const Field& v) {
   return sum;
 }
 
-void precondition(const Model& model, const ScalarPreconditioner& laplacian, const Field& r,
-                  Workspace& workspace, Field& z) {
-  laplacian.apply(r, z);
-  if (!model.has_volume) return;
-  relax_volume(model, z, workspace);
-  Field y(r.size());
-  parallel_for(model.node_count(), [&](Index i) {
-    y[uz(i)] = press_tets(model, workspace, workspace.tet_pressure_change, i);
-  });
-  Field correction;
-  laplacian.apply(y, correction);
-  parallel_for(model.node_count(), [&](Index i) { z[uz(i)] -= correction[uz(i)]; });
-}
-
 namespace {
 
 constexpr int most_products =
@@ -79,26 +66,35 @@ void damping_times(const Objective& objective, const Field& u, Workspace& worksp
                           out);
 }
 
-// out = H d at positions x; expects prepare_stiffness.
-void hessian_times(const Objective& objective, const Field& x, const Field& d, Workspace& workspace,
-                   Field& out) {
-  const Model& model = objective.model;
-  stiffness_damping_times(model, x, 1.0, 0.0, d, Tangent::full, workspace, out);
-  if (objective.inertia > 0.0) {
-    parallel_for(model.node_count(), [&](Index i) {
-      const auto k = uz(i);
-      if (model.inverse_mass[k] > 0.0) out[k] += objective.inertia * model.mass[k] * d[k];
-    });
-  }
-  if (objective.rate > 0.0) {
-    Field damped;
-    damping_times(objective, d, workspace, damped);
-    add(out, objective.rate, damped);
-  }
+// Sum over the tets of what the material pulls with at a strain of 1e-5, squared [N2].
+double material_pull2(const Model& model) {
+  return parallel_sum(model.tet_count(), [&](Index t) {
+    const double side = std::cbrt(model.rest_volume[uz(t)]);
+    const double pull = 1e-5 * model.tet_modulus[uz(t)] * side * side;
+    return pull * pull;
+  });
 }
 
-// See minimise().
-double carried(const Objective& objective, const State& state, const Workspace& workspace) {
+// What is left of digits in a force that rests: a unit in the last place of the positions times
+// what a node resists with, over all nodes [N].
+double rounding_force(const Objective& objective, const State& state) {
+  const Model& model = objective.model;
+  double far = 0.0;
+  for (const Vec3& x : state.position) far = std::max(far, x.cwiseAbs().maxCoeff());
+  const double inertial = parallel_sum(model.node_count(), [&](Index i) {
+    const double k = objective.inertia * model.mass[uz(i)];
+    return model.inverse_mass[uz(i)] == 0.0 ? 0.0 : k * k;
+  });
+  const double material = parallel_sum(model.tet_count(), [&](Index t) {
+    const double k = 4.0 * model.tet_modulus[uz(t)] * std::cbrt(model.rest_volume[uz(t)]);
+    return k * k;
+  });
+  return std::numeric_limits<double>::epsilon() * far * std::sqrt(inertial + material);
+}
+
+// See minimise(). material: of material_pull2.
+double carried(const Objective& objective, double material, const State& state,
+               const Workspace& workspace) {
   const Model& model = objective.model;
   const Field outer = outer_forces(model, state);
   double inertial = 0.0;
@@ -113,69 +109,45 @@ double carried(const Objective& objective, const State& state, const Workspace& 
   const double reactions = parallel_sum(model.node_count(), [&](Index i) {
     return model.inverse_mass[uz(i)] == 0.0 ? workspace.force[uz(i)].squaredNorm() : 0.0;
   });
-  const double material = parallel_sum(model.tet_count(), [&](Index t) {
-    const double pull =
-        1e-5 * model.tet_modulus[uz(t)] * std::pow(model.rest_volume[uz(t)], 2.0 / 3.0);
-    return pull * pull;
-  });
   return std::sqrt(std::max({dot(outer, outer), inertial, reactions, material}));
 }
 
-// An approximate solution p of K p = r: conjugate gradients that stop at |residual| <= forcing |r|
-// or where the energy turns out not to be convex (Steihaug 1983).
-int newton_direction(const Objective& objective, const Field& x, const Field& r0, double forcing,
-                     const ScalarPreconditioner& preconditioner, Workspace& workspace, Field& p) {
-  const Model& model = objective.model;
-  prepare_stiffness(model, x, workspace);
-  p.assign(r0.size(), Vec3::Zero());
-  Field r(r0), z, q(r0.size());
-  precondition(model, preconditioner, r, workspace, z);
-  Field d(z);
-  double rz = dot(r, z);
-  const double goal = forcing * std::sqrt(dot(r, r));
-  int products = 0;
-  while (products < most_products) {
-    hessian_times(objective, x, d, workspace, q);
-    ++products;
-    const double curvature = dot(d, q);
-    if (curvature <= 1e-12 * rz) {
-      if (products == 1) p = d;
-      break;
-    }
-    const double alpha = rz / curvature;
-    add(p, alpha, d);
-    add(r, -alpha, q);
-    if (std::sqrt(dot(r, r)) <= goal) break;
-    precondition(model, preconditioner, r, workspace, z);
-    const double next = dot(r, z);
-    const double beta = next / rz;
-    rz = next;
-    parallel_for(model.node_count(), [&](Index i) { d[uz(i)] = z[uz(i)] + beta * d[uz(i)]; });
-  }
-  return products;
-}
-
-// Moves along p so that the energy falls: halves the step until it does. Close to rest, where the
+// Moves along p, the whole way where the force along p is then a fraction of what it was, which
+// costs no more than the force there (`f` becomes it); else so that the energy falls: halves the
+// step until it does. Close to rest, where the
 // change drowns in rounding, the force along p has to shrink instead. Returns false if nothing did.
-bool line_search(const Objective& objective, const Field& f, const Field& p, Workspace& workspace,
+bool line_search(const Objective& objective, const Field& p, Workspace& workspace, Field& f,
                  State& state) {
   const Model& model = objective.model;
   const double slope = dot(f, p);
+  const Field start = state.position;
+  add(state.position, 1.0, p);
+  Field after = objective_force(objective, state, workspace);
+  if (std::abs(dot(after, p)) <= 0.5 * slope && dot(after, after) <= 4.0 * dot(f, f)) {
+    f = std::move(after);
+    return true;
+  }
+  state.position = start;
   const double before = objective_value(objective, state, workspace);
   // What the pull of the network and the push of the tets, which cancel at rest, leave of digits.
   const double rounding = 1e-13 * parallel_sum(model.tet_count(), [&](Index t) {
                             return model.tet_modulus[uz(t)] * model.rest_volume[uz(t)];
                           });
-  const Field start = state.position;
   double alpha = 1.0;
   for (int cut = 0; cut < 40; ++cut) {
     state.position = start;
     add(state.position, alpha, p);
     const double now = objective_value(objective, state, workspace);
-    if (now <= before - 1e-4 * alpha * slope) return true;
+    if (now <= before - 1e-4 * alpha * slope) {
+      f = objective_force(objective, state, workspace);
+      return true;
+    }
     if (alpha * slope <= 1e-9 * std::max(std::abs(before), std::abs(now)) + rounding) {
-      const Field after = objective_force(objective, state, workspace);
-      if (std::abs(dot(after, p)) <= 0.9 * slope) return true;
+      after = objective_force(objective, state, workspace);
+      if (std::abs(dot(after, p)) <= 0.9 * slope) {
+        f = std::move(after);
+        return true;
+      }
     }
     // The parabola through energy and slope at 0 and the energy here, kept in bounds.
     const double bend = now - before + alpha * slope;
@@ -260,26 +232,28 @@ Field objective_force(const Objective& objective, const State& state, Workspace&
   return f;
 }
 
-NewtonReport minimise(const Objective& objective, const ScalarPreconditioner& preconditioner,
+NewtonReport minimise(const Objective& objective, LinearSolver& linear,
                       const NewtonOptions& options, Workspace& workspace, State& state) {
   NewtonReport report;
   const Reach reach(objective.model, state);
+  const double material = material_pull2(objective.model);
+  const double rounding = rounding_force(objective, state);
+  Field f = objective_force(objective, state, workspace);
   Field p;
   for (;;) {
-    const Field f = objective_force(objective, state, workspace);
     report.force = std::sqrt(dot(f, f));
-    const double scale = carried(objective, state, workspace);
+    const double scale = carried(objective, material, state, workspace);
     report.residual = report.force == 0.0 ? 0.0 : report.force / scale;
     if (options.on_progress) options.on_progress({report.newton, report.residual});
     if (!(report.force < no_limit) || !reach.holds(state)) return report;
-    report.rests = report.force <= options.tolerance * scale;
+    report.rests = report.force <= std::max(options.tolerance * scale, rounding);
     report.stopped = options.stop != nullptr && options.stop->load();
     if (report.rests || report.stopped || report.newton == options.most) return report;
     const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.1);
-    report.products +=
-        newton_direction(objective, state.position, f, forcing, preconditioner, workspace, p);
+    linear.assemble(objective, state.position, workspace);
+    report.products += linear.solve(f, forcing, most_products, p);
     ++report.newton;
-    if (!line_search(objective, f, p, workspace, state)) return report;
+    if (!line_search(objective, p, workspace, f, state)) return report;
   }
 }
 

@@ -8,9 +8,10 @@
 
 #include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
-#include "sinew/solver/scalar_preconditioner.h"
 
 namespace sinew {
+
+class LinearSolver;
 
 using Field = std::vector<Vec3>;  // one vector per node
 
@@ -41,14 +42,6 @@ Field objective_force(const Objective& objective, const State& state, Workspace&
 // v . C v of dashpots, in their directions at x, and drag [W], v of all nodes.
 double damping_power(const Model& model, const Field& x, const Field& v);
 
-// z = P^-1 r with  P^-1 = A^-1 - A^-1 B^T D B A^-1:  A the scalar Laplacian, B the volumes' rates,
-// D = (V/kappa + 3 V/mu)^-1. It is the inverse of A + B^T (kappa/V) B with 3 V/mu in the place of
-// B A^-1 B^T (Woodbury); because (div u)^2 <= 3 |grad u|^2 that place is filled from above, and
-// P^-1 stays positive. Without it the iterations grow as sqrt(kappa/mu). Expects what
-// prepare_stiffness leaves in the workspace.
-void precondition(const Model& model, const ScalarPreconditioner& laplacian, const Field& r,
-                  Workspace& workspace, Field& z);
-
 struct NewtonProgress {
   int newton = 0;         // steps so far
   double residual = 0.0;  // |force| / scale [-]
@@ -75,7 +68,7 @@ struct NewtonReport {
 // The residual is |force| over the norm of what is carried: the largest of the outer forces and the
 // inertial ones on the free nodes, the model's forces on the others, and 1e-5 of what the material
 // pulls with at a strain of one.
-NewtonReport minimise(const Objective& objective, const ScalarPreconditioner& preconditioner,
+NewtonReport minimise(const Objective& objective, LinearSolver& linear,
                       const NewtonOptions& options, Workspace& workspace, State& state);
 
 // --- sums over nodes, in an order that no thread count changes ---

@@ -104,8 +104,7 @@ void refuse_unheld_bodies(const Model& model, const Field& force) {
 
 }  // namespace
 
-StaticSolver::StaticSolver(const Model& model)
-    : model_(model), workspace_(model), preconditioner_(model) {
+StaticSolver::StaticSolver(const Model& model) : model_(model), workspace_(model), linear_(model) {
   double stiffest = 0.0;
   for (std::size_t t = 0; t < model.tets.size(); ++t) {
     double bulk = model.tet_bulk[t];
@@ -127,37 +126,27 @@ StaticSolver::StaticSolver(const Model& model)
 
 int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Vec3>& rhs,
                                 double tolerance, std::vector<Vec3>& u) {
-  prepare_stiffness(model_, x, workspace_);
-  const auto times = [&](const Field& in, Field& out) {
-    stiffness_damping_times(model_, x, 1.0, 0.0, in, Tangent::full, workspace_, out);
-  };
-  Field r(rhs);
-  Field q(u.size());
-  keep_free(model_, r);
-  const double goal = tolerance * std::sqrt(dot(r, r));
-  times(u, q);
-  add(r, -1.0, q);
-  // Nothing but a prescribed displacement: its forces set the scale.
-  const double target = goal > 0.0 ? goal : tolerance * std::sqrt(dot(r, r));
-  Field z, p;
-  precondition(model_, preconditioner_, r, workspace_, z);
-  p = z;
-  double rz = dot(r, z);
-  int products = 1;
-  const int most = 20000;
-  while (std::sqrt(dot(r, r)) > target && products < most) {
-    times(p, q);
+  constexpr double each = 1e-4;  // what single precision takes away in one go
+  constexpr int most = 20000;
+  Field r, p, q(u.size());
+  double goal = 0.0;
+  double before = no_limit;
+  int products = 0;
+  linear_.assemble(Objective{model_}, x, workspace_);
+  while (products < most) {
+    stiffness_damping_times(model_, x, 1.0, 0.0, u, Tangent::full, workspace_, q);
     ++products;
-    const double curvature = dot(p, q);
-    if (!(curvature > 0.0)) break;
-    const double alpha = rz / curvature;
-    add(u, alpha, p);
-    add(r, -alpha, q);
-    precondition(model_, preconditioner_, r, workspace_, z);
-    const double next = dot(r, z);
-    const double beta = next / rz;
-    rz = next;
-    parallel_for(model_.node_count(), [&](Index i) { p[uz(i)] = z[uz(i)] + beta * p[uz(i)]; });
+    r = rhs;
+    keep_free(model_, r);
+    if (goal == 0.0) goal = tolerance * std::sqrt(dot(r, r));
+    add(r, -1.0, q);
+    const double left = std::sqrt(dot(r, r));
+    // Nothing but a prescribed displacement: its forces set the scale.
+    if (goal == 0.0) goal = tolerance * left;
+    if (left <= goal || left > 0.5 * before) break;
+    before = left;
+    products += linear_.solve(r, std::max(each, 0.5 * goal / left), most, p);
+    add(u, 1.0, p);
   }
   return products;
 }
@@ -199,7 +188,11 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
         move[uz(node)] = pin.path.at(t, model_.rest_position[uz(node)]) - state.position[uz(node)];
       }
     }
-    preconditioner_.extend(move);
+    // The free nodes follow the pins as the tangent spreads their motion.
+    if (dot(move, move) > 0.0) {
+      report.products +=
+          solve_tangent(state.position, Field(move.size(), Vec3::Zero()), 1e-2, move);
+    }
     add(state.position, 1.0, move);
     ++report.load_steps;
     const auto newton = [&](const Model& model, double tolerance) {
@@ -210,7 +203,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
           options.on_progress({report.load_steps, next, before_this + p.newton, p.residual});
         };
       }
-      const NewtonReport r = minimise(objective, preconditioner_, o, workspace_, state);
+      const NewtonReport r = minimise(objective, linear_, o, workspace_, state);
       report.newton += r.newton;
       report.products += r.products;
       report.force = r.force;

@@ -8,7 +8,7 @@
 
 #include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
-#include "sinew/solver/scalar_preconditioner.h"
+#include "sinew/solver/linear_solver.h"
 
 namespace sinew {
 
@@ -67,7 +67,7 @@ class StaticSolver {
  private:
   const Model& model_;
   Workspace workspace_;
-  ScalarPreconditioner preconditioner_;
+  LinearSolver linear_;
   std::unique_ptr<Model> softened_;  // with less stiff volume, where that helps; else none
 };
 

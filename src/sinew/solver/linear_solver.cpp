@@ -1,0 +1,70 @@
+#include "sinew/solver/linear_solver.h"
+
+#include <cmath>
+
+#include "sinew/forces/stiffness.h"
+
+namespace sinew {
+
+LinearSolver::LinearSolver(const Model& model)
+    : matrix_(model),
+      preconditioner_(model),
+      r_(model.rest_position.size()),
+      z_(r_),
+      d_(r_),
+      q_(r_),
+      p_(r_) {}
+
+void LinearSolver::assemble(const Objective& objective, const Field& x, Workspace& workspace) {
+  const Model& model = objective.model;
+  if (factored_model_ != &model ||
+      std::abs(factored_inertia_ - objective.inertia) > 1e-6 * objective.inertia) {
+    Objective rest = objective;
+    rest.lag = &model.rest_position;
+    prepare_stiffness(model, model.rest_position, workspace);
+    matrix_.assemble(rest, model.rest_position, workspace);
+    preconditioner_.factor(matrix_);
+    factored_model_ = &model;
+    factored_inertia_ = objective.inertia;
+  }
+  prepare_stiffness(model, x, workspace);
+  matrix_.assemble(objective, x, workspace);
+  preconditioner_.turn(x);
+}
+
+int LinearSolver::solve(const Field& r, double forcing, int most, Field& p) {
+  const auto nodes = static_cast<Index>(r.size());
+  const double size = std::sqrt(dot(r, r));
+  p.assign(r.size(), Vec3::Zero());
+  if (size == 0.0) return 0;
+  parallel_for(nodes, [&](Index i) {
+    r_[uz(i)] = Float4(Vec3(r[uz(i)] / size));  // no square of it leaves the range of a float
+    p_[uz(i)] = Float4();
+  });
+  double rz = preconditioner_.apply(matrix_, r_, z_);
+  d_ = z_;
+  int products = 0;
+  while (products < most) {
+    const double curvature = matrix_.times(d_, q_);
+    ++products;
+    if (!(curvature > 1e-12 * rz)) {
+      if (products == 1) p_ = d_;
+      break;
+    }
+    const auto alpha = static_cast<float>(rz / curvature);
+    const double left = parallel_sum(nodes, [&](Index i) {
+      p_[uz(i)] += alpha * d_[uz(i)];
+      r_[uz(i)] = r_[uz(i)] - alpha * q_[uz(i)];
+      return static_cast<double>(r_[uz(i)].dot(r_[uz(i)]));
+    });
+    if (!(std::sqrt(left) > forcing)) break;
+    const double next = preconditioner_.apply(matrix_, r_, z_);
+    const auto beta = static_cast<float>(next / rz);
+    rz = next;
+    parallel_for(nodes, [&](Index i) { d_[uz(i)] = z_[uz(i)] + beta * d_[uz(i)]; });
+  }
+  parallel_for(nodes, [&](Index i) { p[uz(i)] = size * p_[uz(i)].vec3(); });
+  return products;
+}
+
+}  // namespace sinew

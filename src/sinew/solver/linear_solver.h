@@ -1,0 +1,35 @@
+// Newton's linear systems: conjugate gradients on the assembled tangent, with the two-level
+// preconditioner. docs/methods/linear-solver.md.
+#pragma once
+
+#include <memory>
+
+#include "sinew/solver/newton.h"
+#include "sinew/solver/tangent_matrix.h"
+#include "sinew/solver/two_level.h"
+
+namespace sinew {
+
+class LinearSolver {
+ public:
+  explicit LinearSolver(const Model& model);
+
+  // Makes the tangent K of the objective at positions x the matrix, and factors the preconditioner
+  // where stiffness, step or damping differ from those that it was factored for. Leaves in the
+  // workspace what prepare_stiffness does at x.
+  void assemble(const Objective& objective, const Field& x, Workspace& workspace);
+
+  // An approximate solution p of K p = r, 0 on nodes whose motion is given: stops at
+  // |K p - r| <= forcing |r|, after `most` products, or where K turns out not to be positive; p is
+  // then the best so far, and r . p > 0 all the same (Steihaug 1983). Returns the products taken.
+  int solve(const Field& r, double forcing, int most, Field& p);
+
+ private:
+  TangentMatrix matrix_;
+  TwoLevel preconditioner_;
+  const Model* factored_model_ = nullptr;  // what preconditioner_ was factored for
+  double factored_inertia_ = -1.0;
+  Field4 r_, z_, d_, q_, p_;  // residual, P^-1 r, direction, K d, solution
+};
+
+}  // namespace sinew

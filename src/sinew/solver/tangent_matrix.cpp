@@ -1,0 +1,309 @@
+#include "sinew/solver/tangent_matrix.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+
+#include "sinew/forces/obstacles.h"
+#include "sinew/forces/spring_law.h"
+#include "sinew/forces/volume.h"
+#include "sinew/forces/volume_law.h"
+
+namespace sinew {
+namespace {
+
+// The pairs of a tet's corners, each with the other two in the order that makes all four an even
+// permutation; then d2v/dx_a dx_b = -[x_d - x_c]_x / 6.
+struct Pair {
+  std::size_t a, b, c, d;
+};
+constexpr std::array<Pair, 6> tet_pairs = {
+    {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
+
+Mat3 cross_matrix(const Vec3& w) {
+  Mat3 m;
+  m << 0.0, -w.z(), w.y(), w.z(), 0.0, -w.x(), -w.y(), w.x(), 0.0;
+  return m;
+}
+
+// items[start[k] .. start[k + 1]) = the i in [0, count) with key(i) = k, in increasing order; those
+// with a negative key are left out.
+template <typename Key>
+void sort_by_key(std::size_t keys, Index count, const Key& key, std::vector<Index>& start,
+                 std::vector<Index>& items) {
+  start.assign(keys + 1, 0);
+  for (Index i = 0; i < count; ++i) {
+    if (key(i) >= 0) ++start[uz(key(i)) + 1];
+  }
+  for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
+  items.resize(uz(start.back()));
+  std::vector<Index> next(start.begin(), start.end() - 1);
+  for (Index i = 0; i < count; ++i) {
+    if (key(i) >= 0) items[uz(next[uz(key(i))]++)] = i;
+  }
+}
+
+bool acts(const Model& model, std::size_t s) {
+  return model.stiffness[s] > 0.0 || model.damping[s] > 0.0 || model.stretch_limit[s] < no_limit ||
+         model.compress_limit[s] < no_limit;
+}
+
+Edge sorted(Index a, Index b) {
+  return a < b ? Edge{a, b} : Edge{b, a};
+}
+
+// A symmetric positive definite 3 x 3 matrix near m: m itself where it is one.
+Mat3 definite(const Mat3& m) {
+  const Mat3 s = 0.5 * (m + m.transpose());
+  const double mean = s.trace() / 3.0;
+  if (s(0, 0) > 0.0 && s.topLeftCorner<2, 2>().determinant() > 0.0 &&
+      s.determinant() > 1e-9 * mean * mean * mean) {
+    return s;
+  }
+  return (mean > 0.0 ? mean : 1.0) * Mat3::Identity();
+}
+
+}  // namespace
+
+TangentMatrix::TangentMatrix(const Model& model) : model_(model) {
+  free_.resize(model.rest_position.size());
+  for (std::size_t i = 0; i < free_.size(); ++i) free_[i] = model.inverse_mass[i] > 0.0 ? 1 : 0;
+  find_edges();
+  find_far_neighbours();
+  if (model.has_volume) find_cells();
+  own_block_.resize(free_.size());
+  inverse_diagonal_.resize(free_.size());
+}
+
+void TangentMatrix::find_edges() {
+  for (const Tet& tet : model_.tets) {
+    for (const Pair& p : tet_pairs) edges_.push_back(sorted(tet[p.a], tet[p.b]));
+  }
+  for (std::size_t s = 0; s < model_.springs.size(); ++s) {
+    if (acts(model_, s)) edges_.push_back(sorted(model_.springs[s][0], model_.springs[s][1]));
+  }
+  std::sort(edges_.begin(), edges_.end());
+  edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
+  const auto edge_of = [&](Index a, Index b) {
+    const auto found = std::lower_bound(edges_.begin(), edges_.end(), sorted(a, b));
+    return static_cast<Index>(found - edges_.begin());
+  };
+
+  std::vector<Index> of_pair, pairs;
+  of_pair.reserve(6 * model_.tets.size());
+  for (const Tet& tet : model_.tets) {
+    for (const Pair& p : tet_pairs) of_pair.push_back(edge_of(tet[p.a], tet[p.b]));
+  }
+  sort_by_key(
+      edges_.size(), static_cast<Index>(of_pair.size()), [&](Index i) { return of_pair[uz(i)]; },
+      edge_tet_start_, pairs);
+  edge_tets_.reserve(pairs.size());
+  for (const Index k : pairs) {
+    const Tet& tet = model_.tets[uz(k / 6)];
+    const Pair& p = tet_pairs[uz(k % 6)];
+    const bool even = tet[p.a] < tet[p.b];
+    edge_tets_.push_back({k / 6, tet[even ? p.c : p.d], tet[even ? p.d : p.c]});
+  }
+  std::vector<Index> of_spring;
+  for (std::size_t s = 0; s < model_.springs.size(); ++s) {
+    of_spring.push_back(acts(model_, s) ? edge_of(model_.springs[s][0], model_.springs[s][1]) : -1);
+  }
+  sort_by_key(
+      edges_.size(), static_cast<Index>(of_spring.size()),
+      [&](Index i) { return of_spring[uz(i)]; }, edge_spring_start_, edge_springs_);
+
+  // Each edge is an entry in the rows of both its ends.
+  const auto ends = static_cast<Index>(2 * edges_.size());
+  std::vector<Index> entry;  // 2 e + end
+  sort_by_key(
+      free_.size(), ends, [&](Index i) { return edges_[uz(i / 2)][uz(i % 2)]; }, near_start_,
+      entry);
+  edge_entries_.resize(edges_.size());
+  near_.resize(entry.size());
+  near_block_.resize(entry.size());
+  for (std::size_t k = 0; k < entry.size(); ++k) {
+    const auto e = uz(entry[k] / 2);
+    const auto end = uz(entry[k] % 2);
+    near_[k] = edges_[e][1 - end];
+    edge_entries_[e][end] = static_cast<Index>(k);
+  }
+}
+
+void TangentMatrix::find_far_neighbours() {
+  edge_network_.assign(edges_.size(), 0.0);
+  far_start_.assign(free_.size() + 1, 0);
+  far_sum_.resize(free_.size());
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    const bool has_network = !model_.network_start.empty();
+    for (Index k = has_network ? model_.network_start[i] : 0;
+         has_network && k < model_.network_start[i + 1]; ++k) {
+      const Index j = model_.network_node[uz(k)];
+      const Edge edge = sorted(static_cast<Index>(i), j);
+      const auto found = std::lower_bound(edges_.begin(), edges_.end(), edge);
+      if (found != edges_.end() && *found == edge) {
+        edge_network_[static_cast<std::size_t>(found - edges_.begin())] =
+            model_.network_stiffness[uz(k)];
+      } else {
+        far_.push_back(j);
+        far_stiffness_.push_back(static_cast<float>(model_.network_stiffness[uz(k)]));
+      }
+    }
+    far_sum_[i] = 0.0f;
+    for (auto k = uz(far_start_[i]); k < far_.size(); ++k) far_sum_[i] += far_stiffness_[k];
+    far_start_[i + 1] = static_cast<Index>(far_.size());
+  }
+}
+
+void TangentMatrix::find_cells() {
+  cell_start_.push_back(0);
+  part_start_.push_back(0);
+  std::vector<std::pair<Index, Part>> parts;  // node and what it gets
+  for (Index c = 0; c < model_.cell_count(); ++c) {
+    parts.clear();
+    for (Index k = model_.cell_start[uz(c)]; k < model_.cell_start[uz(c) + 1]; ++k) {
+      const Index t = model_.cell_tet[uz(k)];
+      const auto share = static_cast<float>(model_.cell_weight[uz(k)]);
+      for (Index a = 0; a < 4; ++a) {
+        parts.push_back({model_.tets[uz(t)][uz(a)], {4 * t + a, share}});
+      }
+    }
+    std::sort(parts.begin(), parts.end(), [](const auto& p, const auto& q) {
+      return p.first != q.first ? p.first < q.first : p.second.corner < q.second.corner;
+    });
+    for (std::size_t p = 0; p < parts.size(); ++p) {
+      parts_.push_back(parts[p].second);
+      if (p + 1 < parts.size() && parts[p + 1].first == parts[p].first) continue;
+      cell_node_.push_back(parts[p].first);
+      entry_cell_.push_back(c);
+      part_start_.push_back(static_cast<Index>(parts_.size()));
+    }
+    cell_start_.push_back(static_cast<Index>(cell_node_.size()));
+  }
+  tet_gradient_.resize(model_.tets.size());
+  gradient_.resize(cell_node_.size());
+  cell_stiffness_.resize(model_.cell_volume.size());
+  cell_push_.resize(model_.cell_volume.size());
+  sort_by_key(
+      free_.size(), static_cast<Index>(cell_node_.size()),
+      [&](Index k) { return cell_node_[uz(k)]; }, node_start_, node_entry_);
+}
+
+// B_ab = -K_ab, a < b the ends of each edge, and B_ba, its transpose.
+void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
+                                   const Workspace& workspace) {
+  const Model& model = objective.model;
+  parallel_for(static_cast<Index>(edges_.size()), [&](Index i) {
+    const auto e = uz(i);
+    const auto [a, b] = edges_[e];
+    Vec3 turn = Vec3::Zero();  // sum of s_t (x_d - x_c) / 6
+    Mat3 block = edge_network_[e] * Mat3::Identity();
+    for (auto k = uz(edge_tet_start_[e]); model.has_volume && k < uz(edge_tet_start_[e + 1]); ++k) {
+      const AroundEdge& around = edge_tets_[k];
+      const auto t = uz(around.tet);
+      turn += workspace.tet_pressure[t] * (x[uz(around.d)] - x[uz(around.c)]);
+      const double stiffness = tet_volume_stiffness(model, workspace, t);
+      if (stiffness == 0.0) continue;
+      const Tet& tet = model.tets[t];
+      const auto corner = [&](Index node) {
+        return static_cast<std::size_t>(std::find(tet.begin(), tet.end(), node) - tet.begin());
+      };
+      block -= stiffness / model.rest_volume[t] * workspace.tet_gradient[t][corner(a)] *
+               workspace.tet_gradient[t][corner(b)].transpose();
+    }
+    block += cross_matrix(turn / 6.0);
+    for (auto k = uz(edge_spring_start_[e]); k < uz(edge_spring_start_[e + 1]); ++k) {
+      const auto s = uz(edge_springs_[k]);
+      block +=
+          spring_stiffness_block(x[uz(b)] - x[uz(a)], model.stiffness[s], model.rest_length[s]);
+      const double c = objective.rate * model.damping[s];
+      if (c > 0.0) block += dashpot_block((*objective.lag)[uz(b)] - (*objective.lag)[uz(a)], c);
+    }
+    near_block_[uz(edge_entries_[e][0])] = Block3(block);
+    near_block_[uz(edge_entries_[e][1])] = Block3(Mat3(block.transpose()));
+  });
+}
+
+void TangentMatrix::assemble_cells(const Model& model, const Workspace& workspace) {
+  parallel_for(model.tet_count(), [&](Index t) {
+    for (std::size_t a = 0; a < 4; ++a) {
+      tet_gradient_[uz(t)][a] = Float4(workspace.tet_gradient[uz(t)][a]);
+    }
+  });
+  parallel_for(model.cell_count(), [&](Index c) {
+    cell_stiffness_[uz(c)] = static_cast<float>(model.cell_bulk[uz(c)] / model.cell_volume[uz(c)]);
+    for (auto k = uz(cell_start_[uz(c)]); k < uz(cell_start_[uz(c) + 1]); ++k) {
+      Float4 sum;
+      for (auto p = uz(part_start_[k]); p < uz(part_start_[k + 1]); ++p) {
+        const auto corner = uz(parts_[p].corner);
+        sum += parts_[p].share * tet_gradient_[corner / 4][corner % 4];
+      }
+      gradient_[k] = sum;
+    }
+  });
+}
+
+// D, and the inverse of the diagonal.
+void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
+                                   const Workspace& workspace) {
+  const Model& model = objective.model;
+  parallel_for(model.node_count(), [&](Index i) {
+    const auto n = uz(i);
+    if (free_[n] == 0) return;
+    const double weight = (objective.inertia + objective.rate * model.drag[n]) * model.mass[n];
+    Mat3 own = weight * Mat3::Identity();
+    add_obstacle_stiffness(model, x[n], workspace.obstacle_center, i, own);
+    own_block_[n] = Block3(own);
+    own.diagonal().array() += static_cast<double>(far_sum_[n]);
+    Block3 sum(own);
+    for (auto e = uz(near_start_[n]); e < uz(near_start_[n + 1]); ++e) {
+      for (std::size_t c = 0; c < 3; ++c) sum.column[c] += near_block_[e].column[c];
+    }
+    for (auto k = uz(model.has_volume ? node_start_[n] : 0);
+         model.has_volume && k < uz(node_start_[n + 1]); ++k) {
+      const auto entry = uz(node_entry_[k]);
+      const Float4 g = gradient_[entry];
+      const Float4 pushed = cell_stiffness_[uz(entry_cell_[entry])] * g;
+      for (std::size_t c = 0; c < 3; ++c) sum.column[c] += pushed.lanes[c] * g;
+    }
+    inverse_diagonal_[n] = Block3(Mat3(definite(sum.mat3()).inverse()));
+  });
+}
+
+void TangentMatrix::assemble(const Objective& objective, const Field& x,
+                             const Workspace& workspace) {
+  if (objective.model.has_volume) assemble_cells(objective.model, workspace);
+  assemble_edges(objective, x, workspace);
+  assemble_nodes(objective, x, workspace);
+}
+
+double TangentMatrix::times(const Field4& u, Field4& out) const {
+  const bool cells = !cell_stiffness_.empty();
+  parallel_for(static_cast<Index>(cell_stiffness_.size()), [&](Index i) {
+    const auto c = uz(i);
+    Float4 sum;
+    for (auto k = uz(cell_start_[c]); k < uz(cell_start_[c + 1]); ++k) {
+      sum.lanes += gradient_[k].lanes * u[uz(cell_node_[k])].lanes;
+    }
+    cell_push_[c] = cell_stiffness_[c] * (sum.lanes[0] + sum.lanes[1] + sum.lanes[2]);
+  });
+  return parallel_sum(model_.node_count(), [&](Index i) {
+    const auto n = uz(i);
+    out[n] = Float4();
+    if (free_[n] == 0) return 0.0;
+    const Float4 own = u[n];
+    Float4 sum = own_block_[n] * own;
+    for (auto e = uz(near_start_[n]); e < uz(near_start_[n + 1]); ++e) {
+      sum += near_block_[e] * (own - u[uz(near_[e])]);
+    }
+    for (auto e = uz(far_start_[n]); e < uz(far_start_[n + 1]); ++e) {
+      sum += far_stiffness_[e] * (own - u[uz(far_[e])]);
+    }
+    for (auto k = uz(cells ? node_start_[n] : 0); cells && k < uz(node_start_[n + 1]); ++k) {
+      const auto entry = uz(node_entry_[k]);
+      sum += cell_push_[uz(entry_cell_[entry])] * gradient_[entry];
+    }
+    out[n] = sum;
+    return static_cast<double>(own.dot(sum));
+  });
+}
+
+}  // namespace sinew

@@ -1,0 +1,126 @@
+// The second derivative of what is minimised, put together once per Newton step so that the many
+// products of conjugate gradients are cheap. docs/methods/linear-solver.md.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/model.h"
+#include "sinew/solver/float4.h"
+#include "sinew/solver/newton.h"
+
+namespace sinew {
+
+// K u, node by node, in the parts that the model's terms make it of:
+//
+//   (K u)_i = D_i u_i + sum_j B_ij (u_i - u_j) + sum_j k_ij (u_i - u_j)
+//             + sum_c G_ci (kappa_c / V_c) sum_j G_cj . u_j
+//
+// D: inertia, drag, obstacles. B: springs, dashpots, network and what a tet does between the nodes
+// of its edges. k: the network between nodes that share no edge. G_c: the gradient of a cell's
+// volume. Differences of u, so that moving all nodes alike feels none of the rounding of B.
+//
+// In single precision: a Newton direction needs few digits, and half the bytes are half the time.
+// The force that Newton's method brings to zero is in double precision.
+class TangentMatrix {
+ public:
+  explicit TangentMatrix(const Model& model);  // which entries there are
+
+  // Their values at positions x for objective.model: the constructor's, or one that differs from it
+  // in stiffness only. Expects what prepare_stiffness leaves in the workspace at x.
+  void assemble(const Objective& objective, const Field& x, const Workspace& workspace);
+
+  // out = K u (nodes), 0 where the motion is given; u has to be 0 there. Returns u . K u.
+  double times(const Field4& u, Field4& out) const;
+
+  // The inverse of K's diagonal block of each node [m/N] (nodes), 0 where the motion is given.
+  const std::vector<Block3>& inverse_diagonal() const { return inverse_diagonal_; }
+
+  // Calls f(i, j, K_ij) for every block of K but those that come from cells, free nodes alone.
+  template <typename F>
+  void for_each_block(const F& f) const;
+  // Calls f(stiffness, nodes, gradients) for every cell: kappa_c / V_c, and G_c on the nodes.
+  template <typename F>
+  void for_each_cell(const F& f) const;
+
+ private:
+  // A tet with the edge a < b, and its other two nodes in the order that makes d2v/dx_a dx_b equal
+  // to -[x_d - x_c]_x / 6.
+  struct AroundEdge {
+    Index tet, c, d;
+  };
+  // What a corner of a tet adds to the gradient of a cell's volume.
+  struct Part {
+    Index corner;  // 4 t + corner
+    float share;   // of the tet in the cell [-]
+  };
+  void find_edges();
+  void find_far_neighbours();
+  void find_cells();
+  void assemble_edges(const Objective& objective, const Field& x, const Workspace& workspace);
+  void assemble_cells(const Model& model, const Workspace& workspace);
+  void assemble_nodes(const Objective& objective, const Field& x, const Workspace& workspace);
+
+  const Model& model_;
+
+  // Edges: pairs of nodes with a tet or a spring in common.
+  std::vector<Edge> edges_;                         // a < b (edges)
+  std::vector<double> edge_network_;                // k_ab of the network [N/m] (edges)
+  std::vector<std::array<Index, 2>> edge_entries_;  // of B_ab and B_ba (edges)
+  std::vector<Index> edge_tet_start_;               // (edges + 1)
+  std::vector<AroundEdge> edge_tets_;
+  std::vector<Index> edge_spring_start_, edge_springs_;  // spring ids (edges + 1)
+
+  // Rows of the nodes.
+  std::vector<char> free_;                // 1 where the node moves (nodes)
+  std::vector<Index> near_start_, near_;  // neighbours over edges (nodes + 1)
+  std::vector<Block3> near_block_;        // B_ij [N/m]
+  std::vector<Index> far_start_, far_;    // the network's other neighbours (nodes + 1)
+  std::vector<float> far_stiffness_;      // k_ij [N/m]
+  std::vector<float> far_sum_;            // their sum [N/m] (nodes)
+  std::vector<Block3> own_block_;         // D_i [N/m] (nodes)
+  std::vector<Block3> inverse_diagonal_;  // [m/N] (nodes)
+
+  // Cells.
+  std::vector<Index> cell_start_, cell_node_;  // nodes of its tets (cells + 1)
+  std::vector<Index> part_start_;              // (entries + 1)
+  std::vector<Part> parts_;
+  std::vector<std::array<Float4, 4>> tet_gradient_;  // dv/dx of the corners [m2] (tets)
+  std::vector<Float4> gradient_;                     // G_ci [m2] (as cell_node_)
+  std::vector<float> cell_stiffness_;                // kappa_c / V_c [Pa/m3] (cells)
+  std::vector<Index> node_start_, node_entry_;       // entries of cell_node_ (nodes + 1)
+  std::vector<Index> entry_cell_;                    // (as cell_node_)
+  mutable std::vector<float> cell_push_;             // kappa_c / V_c G_c . u (cells)
+};
+
+template <typename F>
+void TangentMatrix::for_each_block(const F& f) const {
+  for (Index i = 0; i < model_.node_count(); ++i) {
+    if (free_[uz(i)] == 0) continue;
+    Mat3 own = own_block_[uz(i)].mat3();
+    for (auto e = uz(near_start_[uz(i)]); e < uz(near_start_[uz(i) + 1]); ++e) {
+      const Mat3 b = near_block_[e].mat3();
+      own += b;
+      if (free_[uz(near_[e])] != 0) f(i, near_[e], Mat3(-b));
+    }
+    for (auto e = uz(far_start_[uz(i)]); e < uz(far_start_[uz(i) + 1]); ++e) {
+      const Mat3 k = static_cast<double>(far_stiffness_[e]) * Mat3::Identity();
+      own += k;
+      if (free_[uz(far_[e])] != 0) f(i, far_[e], Mat3(-k));
+    }
+    f(i, i, own);
+  }
+}
+
+template <typename F>
+void TangentMatrix::for_each_cell(const F& f) const {
+  for (std::size_t c = 0; c < cell_stiffness_.size(); ++c) {
+    const auto begin = uz(cell_start_[c]);
+    const auto count = uz(cell_start_[c + 1]) - begin;
+    f(static_cast<double>(cell_stiffness_[c]), std::span(&cell_node_[begin], count),
+      std::span(&gradient_[begin], count));
+  }
+}
+
+}  // namespace sinew
