@@ -113,19 +113,22 @@ void TangentMatrix::find_edges() {
 
   // Each edge is an entry in the rows of both its ends.
   const auto ends = static_cast<Index>(2 * edges_.size());
-  std::vector<Index> entry;  // 2 e + end
+  std::vector<Index> start, entry;  // 2 e + end
   sort_by_key(
-      free_.size(), ends, [&](Index i) { return edges_[uz(i / 2)][uz(i % 2)]; }, near_start_,
-      entry);
+      free_.size(), ends, [&](Index i) { return edges_[uz(i / 2)][uz(i % 2)]; }, start, entry);
   edge_entries_.resize(edges_.size());
-  near_.resize(entry.size());
-  near_block_.resize(entry.size());
-  for (std::size_t k = 0; k < entry.size(); ++k) {
-    const auto e = uz(entry[k] / 2);
-    const auto end = uz(entry[k] % 2);
-    near_[k] = edges_[e][1 - end];
-    edge_entries_[e][end] = static_cast<Index>(k);
+  near_start_.push_back(0);
+  for (std::size_t i = 0; i < free_.size(); ++i) {
+    for (auto k = uz(start[i]); k < uz(start[i + 1]); ++k) {
+      const auto e = uz(entry[k] / 2);
+      const auto end = uz(entry[k] % 2);
+      edge_entries_[e][end] = static_cast<Index>(near_.size());
+      near_.push_back(edges_[e][1 - end]);
+    }
+    if (near_.size() % 2 == 1) near_.push_back(static_cast<Index>(i));
+    near_start_.push_back(static_cast<Index>(near_.size()));
   }
+  near_block_.resize(3 * near_.size());
 }
 
 void TangentMatrix::find_far_neighbours() {
@@ -146,6 +149,10 @@ void TangentMatrix::find_far_neighbours() {
         far_.push_back(j);
         far_stiffness_.push_back(static_cast<float>(model_.network_stiffness[uz(k)]));
       }
+    }
+    if (far_.size() % 2 == 1) {
+      far_.push_back(static_cast<Index>(i));
+      far_stiffness_.push_back(0.0f);
     }
     far_sum_[i] = 0.0f;
     for (auto k = uz(far_start_[i]); k < far_.size(); ++k) far_sum_[i] += far_stiffness_[k];
@@ -178,7 +185,8 @@ void TangentMatrix::find_cells() {
     }
     cell_start_.push_back(static_cast<Index>(cell_node_.size()));
   }
-  tet_gradient_.resize(model_.tets.size());
+  tet_stiffness_.resize(model_.tets.size());
+  tet_gradient_.resize(4 * model_.tets.size());
   gradient_.resize(cell_node_.size());
   cell_stiffness_.resize(model_.cell_volume.size());
   cell_push_.resize(model_.cell_volume.size());
@@ -187,10 +195,27 @@ void TangentMatrix::find_cells() {
       [&](Index k) { return cell_node_[uz(k)]; }, node_start_, node_entry_);
 }
 
+void TangentMatrix::set_near_block(Index entry, const Mat3& block) {
+  for (std::size_t c = 0; c < 3; ++c) {
+    near_block_[near_column(uz(entry), c)] = Float4(Vec3(block.col(static_cast<int>(c))));
+  }
+}
+
+Mat3 TangentMatrix::near_block(std::size_t entry) const {
+  Mat3 block;
+  for (std::size_t c = 0; c < 3; ++c) {
+    block.col(static_cast<int>(c)) = near_block_[near_column(entry, c)].vec3();
+  }
+  return block;
+}
+
 // B_ab = -K_ab, a < b the ends of each edge, and B_ba, its transpose.
 void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
                                    const Workspace& workspace) {
   const Model& model = objective.model;
+  parallel_for(static_cast<Index>(tet_stiffness_.size()), [&](Index t) {
+    tet_stiffness_[uz(t)] = tet_volume_stiffness(model, workspace, uz(t));
+  });
   parallel_for(static_cast<Index>(edges_.size()), [&](Index i) {
     const auto e = uz(i);
     const auto [a, b] = edges_[e];
@@ -200,7 +225,7 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
       const AroundEdge& around = edge_tets_[k];
       const auto t = uz(around.tet);
       turn += workspace.tet_pressure[t] * (x[uz(around.d)] - x[uz(around.c)]);
-      const double stiffness = tet_volume_stiffness(model, workspace, t);
+      const double stiffness = tet_stiffness_[t];
       if (stiffness == 0.0) continue;
       const Tet& tet = model.tets[t];
       const auto corner = [&](Index node) {
@@ -217,15 +242,15 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
       const double c = objective.rate * model.damping[s];
       if (c > 0.0) block += dashpot_block((*objective.lag)[uz(b)] - (*objective.lag)[uz(a)], c);
     }
-    near_block_[uz(edge_entries_[e][0])] = Block3(block);
-    near_block_[uz(edge_entries_[e][1])] = Block3(Mat3(block.transpose()));
+    set_near_block(edge_entries_[e][0], block);
+    set_near_block(edge_entries_[e][1], block.transpose());
   });
 }
 
 void TangentMatrix::assemble_cells(const Model& model, const Workspace& workspace) {
   parallel_for(model.tet_count(), [&](Index t) {
     for (std::size_t a = 0; a < 4; ++a) {
-      tet_gradient_[uz(t)][a] = Float4(workspace.tet_gradient[uz(t)][a]);
+      tet_gradient_[4 * uz(t) + a] = Float4(workspace.tet_gradient[uz(t)][a]);
     }
   });
   parallel_for(model.cell_count(), [&](Index c) {
@@ -233,8 +258,7 @@ void TangentMatrix::assemble_cells(const Model& model, const Workspace& workspac
     for (auto k = uz(cell_start_[uz(c)]); k < uz(cell_start_[uz(c) + 1]); ++k) {
       Float4 sum;
       for (auto p = uz(part_start_[k]); p < uz(part_start_[k + 1]); ++p) {
-        const auto corner = uz(parts_[p].corner);
-        sum += parts_[p].share * tet_gradient_[corner / 4][corner % 4];
+        sum += parts_[p].share * tet_gradient_[uz(parts_[p].corner)];
       }
       gradient_[k] = sum;
     }
@@ -255,7 +279,7 @@ void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
     own.diagonal().array() += static_cast<double>(far_sum_[n]);
     Block3 sum(own);
     for (auto e = uz(near_start_[n]); e < uz(near_start_[n + 1]); ++e) {
-      for (std::size_t c = 0; c < 3; ++c) sum.column[c] += near_block_[e].column[c];
+      for (std::size_t c = 0; c < 3; ++c) sum.column[c] += near_block_[near_column(e, c)];
     }
     for (auto k = uz(model.has_volume ? node_start_[n] : 0);
          model.has_volume && k < uz(node_start_[n + 1]); ++k) {
@@ -275,35 +299,32 @@ void TangentMatrix::assemble(const Objective& objective, const Field& x,
   assemble_nodes(objective, x, workspace);
 }
 
+TangentRows TangentMatrix::rows() const {
+  return {free_.data(),
+          own_block_.data(),
+          near_start_.data(),
+          near_.data(),
+          near_block_.data(),
+          far_start_.data(),
+          far_.data(),
+          far_stiffness_.data(),
+          cell_start_.data(),
+          cell_node_.data(),
+          gradient_.data(),
+          cell_stiffness_.data(),
+          node_start_.empty() ? nullptr : node_start_.data(),
+          node_entry_.data(),
+          entry_cell_.data()};
+}
+
 double TangentMatrix::times(const Field4& u, Field4& out) const {
-  const bool cells = !cell_stiffness_.empty();
-  parallel_for(static_cast<Index>(cell_stiffness_.size()), [&](Index i) {
-    const auto c = uz(i);
-    Float4 sum;
-    for (auto k = uz(cell_start_[c]); k < uz(cell_start_[c + 1]); ++k) {
-      sum.lanes += gradient_[k].lanes * u[uz(cell_node_[k])].lanes;
-    }
-    cell_push_[c] = cell_stiffness_[c] * (sum.lanes[0] + sum.lanes[1] + sum.lanes[2]);
-  });
-  return parallel_sum(model_.node_count(), [&](Index i) {
-    const auto n = uz(i);
-    out[n] = Float4();
-    if (free_[n] == 0) return 0.0;
-    const Float4 own = u[n];
-    Float4 sum = own_block_[n] * own;
-    for (auto e = uz(near_start_[n]); e < uz(near_start_[n + 1]); ++e) {
-      sum += near_block_[e] * (own - u[uz(near_[e])]);
-    }
-    for (auto e = uz(far_start_[n]); e < uz(far_start_[n + 1]); ++e) {
-      sum += far_stiffness_[e] * (own - u[uz(far_[e])]);
-    }
-    for (auto k = uz(cells ? node_start_[n] : 0); cells && k < uz(node_start_[n + 1]); ++k) {
-      const auto entry = uz(node_entry_[k]);
-      sum += cell_push_[uz(entry_cell_[entry])] * gradient_[entry];
-    }
-    out[n] = sum;
-    return static_cast<double>(own.dot(sum));
-  });
+  const TangentRows m = rows();
+  parallel_blocks(static_cast<Index>(cell_stiffness_.size()),
+                  [&](Index, Range r) { tangent_cells(m, u.data(), r, cell_push_.data()); });
+  return parallel_reduce(
+      model_.node_count(), 0.0,
+      [&](Range r) { return tangent_nodes(m, u.data(), cell_push_.data(), r, out.data()); },
+      [](double a, double b) { return a + b; });
 }
 
 }  // namespace sinew

@@ -9,6 +9,7 @@
 #include "sinew/model/model.h"
 #include "sinew/solver/float4.h"
 #include "sinew/solver/newton.h"
+#include "sinew/solver/tangent_rows.h"
 
 namespace sinew {
 
@@ -58,6 +59,9 @@ class TangentMatrix {
   void find_edges();
   void find_far_neighbours();
   void find_cells();
+  void set_near_block(Index entry, const Mat3& block);
+  Mat3 near_block(std::size_t entry) const;
+  TangentRows rows() const;
   void assemble_edges(const Objective& objective, const Field& x, const Workspace& workspace);
   void assemble_cells(const Model& model, const Workspace& workspace);
   void assemble_nodes(const Objective& objective, const Field& x, const Workspace& workspace);
@@ -70,12 +74,13 @@ class TangentMatrix {
   std::vector<std::array<Index, 2>> edge_entries_;  // of B_ab and B_ba (edges)
   std::vector<Index> edge_tet_start_;               // (edges + 1)
   std::vector<AroundEdge> edge_tets_;
+  std::vector<double> tet_stiffness_;                    // of tet_volume_stiffness [Pa] (tets)
   std::vector<Index> edge_spring_start_, edge_springs_;  // spring ids (edges + 1)
 
   // Rows of the nodes.
   std::vector<char> free_;                // 1 where the node moves (nodes)
   std::vector<Index> near_start_, near_;  // neighbours over edges (nodes + 1)
-  std::vector<Block3> near_block_;        // B_ij [N/m]
+  std::vector<Float4> near_block_;        // B_ij [N/m], see near_column
   std::vector<Index> far_start_, far_;    // the network's other neighbours (nodes + 1)
   std::vector<float> far_stiffness_;      // k_ij [N/m]
   std::vector<float> far_sum_;            // their sum [N/m] (nodes)
@@ -86,12 +91,12 @@ class TangentMatrix {
   std::vector<Index> cell_start_, cell_node_;  // nodes of its tets (cells + 1)
   std::vector<Index> part_start_;              // (entries + 1)
   std::vector<Part> parts_;
-  std::vector<std::array<Float4, 4>> tet_gradient_;  // dv/dx of the corners [m2] (tets)
-  std::vector<Float4> gradient_;                     // G_ci [m2] (as cell_node_)
-  std::vector<float> cell_stiffness_;                // kappa_c / V_c [Pa/m3] (cells)
-  std::vector<Index> node_start_, node_entry_;       // entries of cell_node_ (nodes + 1)
-  std::vector<Index> entry_cell_;                    // (as cell_node_)
-  mutable std::vector<float> cell_push_;             // kappa_c / V_c G_c . u (cells)
+  std::vector<Float4> tet_gradient_;            // dv/dx of the corners [m2] (4 tets)
+  std::vector<Float4> gradient_;                // G_ci [m2] (as cell_node_)
+  std::vector<float> cell_stiffness_;           // kappa_c / V_c [Pa/m3] (cells)
+  std::vector<Index> node_start_, node_entry_;  // entries of cell_node_ (nodes + 1)
+  std::vector<Index> entry_cell_;               // (as cell_node_)
+  mutable std::vector<float> cell_push_;        // kappa_c / V_c G_c . u (cells)
 };
 
 template <typename F>
@@ -100,7 +105,7 @@ void TangentMatrix::for_each_block(const F& f) const {
     if (free_[uz(i)] == 0) continue;
     Mat3 own = own_block_[uz(i)].mat3();
     for (auto e = uz(near_start_[uz(i)]); e < uz(near_start_[uz(i) + 1]); ++e) {
-      const Mat3 b = near_block_[e].mat3();
+      const Mat3 b = near_block(e);
       own += b;
       if (free_[uz(near_[e])] != 0) f(i, near_[e], Mat3(-b));
     }

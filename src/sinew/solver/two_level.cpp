@@ -10,7 +10,7 @@ namespace {
 
 // Few enough groups that their system costs less than a product with K, enough that the iterations
 // do not grow with the mesh.
-constexpr Index smallest_group = 60;
+constexpr Index smallest_group = 90;
 constexpr Index most_groups = 200;
 
 // What keeps the coarse matrix of a body that nothing holds from being singular, as a share of its

@@ -1,0 +1,105 @@
+#include "sinew/solver/tangent_rows.h"
+
+// Every function below is compiled twice: for AVX2 and for what every processor has. Both add up in
+// the same order, so that they give the same bits.
+#if defined(__x86_64__)
+#define SINEW_AVX2 __attribute__((target("avx2")))
+#define SINEW_HAS_AVX2 __builtin_cpu_supports("avx2")
+#else
+#define SINEW_AVX2
+#define SINEW_HAS_AVX2 false
+#endif
+#define SINEW_INLINE inline __attribute__((always_inline))
+
+namespace sinew {
+namespace {
+
+typedef Float4::Lanes F4;
+typedef float F8 __attribute__((vector_size(32)));
+typedef float F8Unaligned __attribute__((vector_size(32), aligned(16)));
+
+SINEW_INLINE void cells_loop(const TangentRows& m, const Float4* u, Range cells, float* push) {
+  for (auto c = uz(cells.begin); c < uz(cells.end); ++c) {
+    F8 pairs = {0, 0, 0, 0, 0, 0, 0, 0};
+    auto k = uz(m.cell_start[c]);
+    const auto end = uz(m.cell_start[c + 1]);
+    for (; k + 1 < end; k += 2) {
+      const F4 a = u[uz(m.cell_node[k])].lanes;
+      const F4 b = u[uz(m.cell_node[k + 1])].lanes;
+      pairs += *reinterpret_cast<const F8Unaligned*>(&m.gradient[k]) *
+               __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    F4 sum = __builtin_shufflevector(pairs, pairs, 0, 1, 2, 3) +
+             __builtin_shufflevector(pairs, pairs, 4, 5, 6, 7);
+    if (k < end) sum += m.gradient[k].lanes * u[uz(m.cell_node[k])].lanes;
+    push[c] = m.cell_stiffness[c] * (sum[0] + sum[1] + sum[2]);
+  }
+}
+
+SINEW_INLINE double nodes_loop(const TangentRows& m, const Float4* u, const float* push,
+                               Range nodes, Float4* out) {
+  double power = 0.0;
+  for (auto n = uz(nodes.begin); n < uz(nodes.end); ++n) {
+    out[n] = Float4();
+    if (m.free[n] == 0) continue;
+    const F4 own = u[n].lanes;
+    const F8 owns = __builtin_shufflevector(own, own, 0, 1, 2, 3, 4, 5, 6, 7);
+    F8 pairs = {0, 0, 0, 0, 0, 0, 0, 0};
+    for (auto e = uz(m.near_start[n]); e < uz(m.near_start[n + 1]); e += 2) {
+      const F4 a = u[uz(m.near[e])].lanes;
+      const F4 b = u[uz(m.near[e + 1])].lanes;
+      const F8 d = owns - __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+      const auto* column = reinterpret_cast<const F8Unaligned*>(&m.near_block[3 * e]);
+      pairs += (column[0] * __builtin_shufflevector(d, d, 0, 0, 0, 0, 4, 4, 4, 4) +
+                column[1] * __builtin_shufflevector(d, d, 1, 1, 1, 1, 5, 5, 5, 5)) +
+               column[2] * __builtin_shufflevector(d, d, 2, 2, 2, 2, 6, 6, 6, 6);
+    }
+    for (auto e = uz(m.far_start[n]); e < uz(m.far_start[n + 1]); e += 2) {
+      const F4 a = u[uz(m.far[e])].lanes;
+      const F4 b = u[uz(m.far[e + 1])].lanes;
+      const float p = m.far_stiffness[e];
+      const float q = m.far_stiffness[e + 1];
+      const F4 four_p = {p, p, p, p};
+      const F4 four_q = {q, q, q, q};
+      pairs += __builtin_shufflevector(four_p, four_q, 0, 1, 2, 3, 4, 5, 6, 7) *
+               (owns - __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7));
+    }
+    F4 sum = __builtin_shufflevector(pairs, pairs, 0, 1, 2, 3) +
+             __builtin_shufflevector(pairs, pairs, 4, 5, 6, 7);
+    sum += (m.own[n] * u[n]).lanes;
+    if (m.node_start != nullptr) {
+      for (auto k = uz(m.node_start[n]); k < uz(m.node_start[n + 1]); ++k) {
+        const auto entry = uz(m.node_entry[k]);
+        const float p = push[uz(m.entry_cell[entry])];
+        sum += F4{p, p, p, p} * m.gradient[entry].lanes;
+      }
+    }
+    out[n].lanes = sum;
+    power += static_cast<double>(u[n].dot(out[n]));
+  }
+  return power;
+}
+
+SINEW_AVX2 void cells_avx2(const TangentRows& m, const Float4* u, Range cells, float* push) {
+  cells_loop(m, u, cells, push);
+}
+
+SINEW_AVX2 double nodes_avx2(const TangentRows& m, const Float4* u, const float* push, Range nodes,
+                             Float4* out) {
+  return nodes_loop(m, u, push, nodes, out);
+}
+
+}  // namespace
+
+void tangent_cells(const TangentRows& rows, const Float4* u, Range cells, float* push) {
+  if (SINEW_HAS_AVX2) return cells_avx2(rows, u, cells, push);
+  cells_loop(rows, u, cells, push);
+}
+
+double tangent_nodes(const TangentRows& rows, const Float4* u, const float* push, Range nodes,
+                     Float4* out) {
+  if (SINEW_HAS_AVX2) return nodes_avx2(rows, u, push, nodes, out);
+  return nodes_loop(rows, u, push, nodes, out);
+}
+
+}  // namespace sinew

@@ -1,0 +1,41 @@
+// The inner loops of TangentMatrix on plain arrays, compiled for what processors can do.
+#pragma once
+
+#include <vector>
+
+#include "sinew/solver/float4.h"
+
+namespace sinew {
+
+// The arrays of tangent_matrix.h that a product needs.
+struct TangentRows {
+  const char* free;          // (nodes)
+  const Block3* own;         // D_i (nodes)
+  const Index* near_start;   // all even (nodes + 1)
+  const Index* near;         // neighbours; a row of odd length is filled up with the node itself
+  const Float4* near_block;  // columns of B_ij: column c of entry e at near_column(e, c)
+  const Index* far_start;    // all even (nodes + 1)
+  const Index* far;
+  const float* far_stiffness;
+  const Index* cell_start;  // (cells + 1)
+  const Index* cell_node;
+  const Float4* gradient;  // G_ci (as cell_node)
+  const float* cell_stiffness;
+  const Index* node_start;  // entries of cell_node by node (nodes + 1); null: no cells
+  const Index* node_entry;
+  const Index* entry_cell;
+};
+
+// Two entries lie side by side, so that their columns load at once.
+inline std::size_t near_column(std::size_t entry, std::size_t column) {
+  return 6 * (entry / 2) + 2 * column + entry % 2;
+}
+
+// push_c = cell_stiffness_c G_c . u for the cells of the range.
+void tangent_cells(const TangentRows& rows, const Float4* u, Range cells, float* push);
+
+// out_i = (K u)_i for the nodes of the range. Returns the sum of u_i . out_i.
+double tangent_nodes(const TangentRows& rows, const Float4* u, const float* push, Range nodes,
+                     Float4* out);
+
+}  // namespace sinew
