@@ -15,6 +15,8 @@ namespace {
 
 constexpr int most_cuts = 10;
 
+const double sdirk2_share = 1.0 - std::sqrt(0.5);  // g: of a step, that each of its parts solves
+
 // a x + b y of all nodes.
 Field blend(double a, const Field& x, double b, const Field& y) {
   Field out(x.size());
@@ -53,16 +55,24 @@ double work_of_the_outside(const Model& model, const Field& before, const State&
 
 ImplicitStepper::ImplicitStepper(const Model& model) : model_(model), workspace_(model) {}
 
+void ImplicitStepper::make_preconditioner(double h) {
+  const double inertia = 1.0 / (h * h);
+  if (preconditioner_ && std::abs(inertia_ - inertia) <= 1e-9 * inertia) return;
+  preconditioner_ = std::make_unique<ScalarPreconditioner>(model_, inertia, 1.0 / h);
+  inertia_ = inertia;
+}
+
+void ImplicitStepper::prepare(double h, const ImplicitOptions& options) {
+  make_preconditioner(options.scheme == Scheme::sdirk2 ? sdirk2_share * h : h);
+}
+
 // Backward Euler over h from the positions `from` with `velocity`, dashpots in their directions at
 // state.position; loads and pins as they are at state.time. Moves the state's positions and sets
 // its velocities.
 bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
                             const ImplicitOptions& options, State& state, ImplicitReport& report) {
   const double inertia = 1.0 / (h * h);
-  if (!preconditioner_ || std::abs(inertia_ - inertia) > 1e-9 * inertia) {
-    preconditioner_ = std::make_unique<ScalarPreconditioner>(model_, inertia, 1.0 / h);
-    inertia_ = inertia;
-  }
+  make_preconditioner(h);
   const Field lag = state.position;
   const Field inertial = blend(1.0, from, h, velocity);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
@@ -75,14 +85,15 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   move_pins(model_, state);
   if (!(objective_value(objective, state, workspace_) < standing)) state.position = stand;
 
-  const NewtonReport newton =
-      minimise(objective, *preconditioner_, {options.tolerance, options.max_newton, nullptr, {}},
-               workspace_, state);
+  const NewtonReport newton = minimise(
+      objective, *preconditioner_,
+      {options.tolerance, options.max_newton, nullptr, {}, options.deadline}, workspace_, state);
   report.newton += newton.newton;
   report.products += newton.products;
   report.residual = std::max(report.residual, newton.residual);
+  report.ran_out = report.ran_out || newton.ran_out;
   state.half_velocity = blend(1.0 / h, state.position, -1.0 / h, from);
-  return newton.rests;
+  return newton.rests || (options.deadline && newton.force < no_limit);
 }
 
 bool ImplicitStepper::try_step(double h, const ImplicitOptions& options, State& state,
@@ -97,7 +108,7 @@ bool ImplicitStepper::try_step(double h, const ImplicitOptions& options, State& 
     s.energy.work_in += work_of_the_outside(model_, before, s, workspace_);
   };
   if (options.scheme == Scheme::sdirk2) {
-    const double g = 1.0 - std::sqrt(0.5);
+    const double g = sdirk2_share;
     state.time = time + g * h;
     if (!solve(x, v, g * h, options, state, report)) return false;
     const Field v1 = state.half_velocity;

@@ -122,9 +122,11 @@ double carried(const Objective& objective, const State& state, const Workspace& 
 }
 
 // An approximate solution p of K p = r: conjugate gradients that stop at |residual| <= forcing |r|
-// or where the energy turns out not to be convex (Steihaug 1983).
+// or where the energy turns out not to be convex (Steihaug 1983), or after the product at which
+// `deadline` has passed: every iterate from the first on leads downhill.
 int newton_direction(const Objective& objective, const Field& x, const Field& r0, double forcing,
-                     const ScalarPreconditioner& preconditioner, Workspace& workspace, Field& p) {
+                     const ScalarPreconditioner& preconditioner, const Deadline& deadline,
+                     Workspace& workspace, Field& p) {
   const Model& model = objective.model;
   prepare_stiffness(model, x, workspace);
   p.assign(r0.size(), Vec3::Zero());
@@ -145,7 +147,7 @@ int newton_direction(const Objective& objective, const Field& x, const Field& r0
     const double alpha = rz / curvature;
     add(p, alpha, d);
     add(r, -alpha, q);
-    if (std::sqrt(dot(r, r)) <= goal) break;
+    if (std::sqrt(dot(r, r)) <= goal || passed(deadline)) break;
     precondition(model, preconditioner, r, workspace, z);
     const double next = dot(r, z);
     const double beta = next / rz;
@@ -266,6 +268,7 @@ NewtonReport minimise(const Objective& objective, const ScalarPreconditioner& pr
   const Reach reach(objective.model, state);
   Field p;
   for (;;) {
+    const Clock::time_point start = Clock::now();
     const Field f = objective_force(objective, state, workspace);
     report.force = std::sqrt(dot(f, f));
     const double scale = carried(objective, state, workspace);
@@ -275,9 +278,14 @@ NewtonReport minimise(const Objective& objective, const ScalarPreconditioner& pr
     report.rests = report.force <= options.tolerance * scale;
     report.stopped = options.stop != nullptr && options.stop->load();
     if (report.rests || report.stopped || report.newton == options.most) return report;
+    // The line search and the force where it ends take about three evaluations such as this one.
+    Deadline deadline = options.deadline;
+    if (deadline) *deadline -= 3 * (Clock::now() - start);
+    report.ran_out = report.newton > 0 && passed(deadline);
+    if (report.ran_out) return report;
     const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.1);
-    report.products +=
-        newton_direction(objective, state.position, f, forcing, preconditioner, workspace, p);
+    report.products += newton_direction(objective, state.position, f, forcing, preconditioner,
+                                        deadline, workspace, p);
     ++report.newton;
     if (!line_search(objective, f, p, workspace, state)) return report;
   }
