@@ -4,6 +4,7 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "sinew/forces/limits.h"
 #include "sinew/forces/springs.h"
 #include "sinew/scene/build.h"
+#include "sinew/solver/implicit.h"
 #include "sinew/solver/stable_step.h"
 #include "sinew/solver/verlet.h"
 
@@ -54,6 +56,33 @@ void VerletStep(benchmark::State& state) {
   state.SetLabel("state after 100 steps " + hex(s.hash()));
   for (auto _ : state) verlet_step(model, h, s, workspace);
   per_spring(state, model);
+}
+
+// Steps of 1/60 s from the start, to a residual of 10^-range(1). Time against Newton steps and
+// products over several tolerances gives what each of them costs: newton_cost and product_cost of
+// run/choose_stepper.h, in steps of Verlet on the same model.
+void ImplicitStep(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const Model model = model_of(state.range(0));
+  ImplicitOptions options;
+  options.tolerance = std::pow(10.0, -static_cast<double>(state.range(1)));
+  ImplicitStepper stepper(model);
+  stepper.prepare(1.0 / 60.0, options);
+  const State start = initial_state(model);
+  ImplicitReport sum;
+  State s;
+  for (auto _ : state) {
+    sum = {};
+    s = start;
+    for (int i = 0; i < 10; ++i) {
+      const ImplicitReport step = stepper.step(1.0 / 60.0, options, s);
+      sum.newton += step.newton;
+      sum.products += step.products;
+    }
+  }
+  state.SetLabel("state after 10 steps " + hex(s.hash()));
+  state.counters["newton"] = sum.newton;
+  state.counters["products"] = sum.products;
 }
 
 void LimitSweep(benchmark::State& state) {
@@ -104,6 +133,7 @@ BENCHMARK(MachineCopy)->Arg(256)->Arg(8 << 10)->Arg(256 << 10);  // KiB: L2, L3,
 BENCHMARK(MachineMultiplyAdd);
 BENCHMARK(SpringForces)->Arg(4)->Arg(8)->Arg(17)->Arg(0);
 BENCHMARK(VerletStep)->ArgsProduct({{4, 8, 17, 0}, {1, 2}})->UseRealTime();
+BENCHMARK(ImplicitStep)->ArgsProduct({{4, 8, 0}, {1, 3, 6}})->Unit(benchmark::kMillisecond);
 BENCHMARK(LimitSweep)->Arg(4)->Arg(8)->Arg(0);
 BENCHMARK(StableStepSearch)->Arg(4)->Arg(8)->Arg(0)->Unit(benchmark::kMillisecond);
 

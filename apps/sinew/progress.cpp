@@ -104,6 +104,24 @@ void ProgressBar::clear() {
   drawn_ = false;
 }
 
+namespace {
+
+// What a run did about steps that were too long and bodies that were tangled; empty: nothing.
+std::string interventions(const Summary& s) {
+  std::string text;
+  const auto add = [&](std::int64_t count, const char* what) {
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
+  };
+  add(s.step_reductions, "times shorter");
+  add(s.step_increases, "times longer");
+  add(s.step_cuts, "cut in half");
+  add(s.righting_steps, "led a tangled body back");
+  add(s.peak_inverted_tets, "tets inverted at the most");
+  return text;
+}
+
+}  // namespace
+
 std::string format_table(const Summary& s) {
   std::string t;
   const auto row = [&](const char* name, const std::string& text) {
@@ -128,6 +146,17 @@ std::string format_table(const Summary& s) {
     row("step", fmt::format("{} ({}; stable up to {}{}), {} steps", scaled(s.dt, "s"),
                             s.dt_auto ? "auto" : "given", scaled(s.stable_step, "s"),
                             s.stable_step < s.dt ? " when stiffest" : "", grouped(s.steps)));
+  }
+  const std::string steps = interventions(s);
+  if (!steps.empty()) row("", steps);
+  if (s.budget) {
+    row("budget",
+        fmt::format("{} a frame: 99 % took at most {}, the longest {}; {} of {} cut "
+                    "short, {} late",
+                    scaled(1e-3 * s.budget->ms, "s"),
+                    scaled(1e-3 * s.budget->percentile_99_ms, "s"),
+                    scaled(1e-3 * s.budget->largest_ms, "s"), grouped(s.budget->cut_short),
+                    grouped(s.frames), grouped(s.budget->late)));
   }
   row("wall time", fmt::format("{:.2f} s for {:.2f} s simulated: {:.2f}x real time", s.wall_seconds,
                                s.sim_seconds, s.realtime_factor()));

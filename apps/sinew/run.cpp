@@ -78,6 +78,10 @@ int supervise(const Arguments& a, const std::string& title, fs::path out, const 
   options.force = a.force;
   options.stop = &stop_requested;
   options.on_progress = [&](const Progress& p) { bar.update(p); };
+  options.on_stepper = [&](const std::string& reason) {
+    if (!a.quiet && !a.json) fmt::print("stepper = \"auto\" takes {}\n", reason);
+    std::fflush(stdout);
+  };
   const RunResult result = work(options);
   bar.clear();
   if (a.json) {

@@ -82,7 +82,7 @@ const std::vector<Bad>& bad_scenes() {
        "  remedy: docs/scene-format.md says what 'path' takes"},
       {"stepper = { kind = \"verlet\" }\n" BEAM,
        "scene.toml:1:11: 'stepper' in the scene is a table; expected one of \"verlet\", "
-       "\"implicit\", \"static\"\n"
+       "\"implicit\", \"static\", \"auto\"\n"
        "  remedy: the default is stepper = \"verlet\""},
       // --- ranges ---
       {BEAM "young = 0\n",
@@ -143,9 +143,18 @@ const std::vector<Bad>& bad_scenes() {
        "  remedy: docs/scene-format.md says what 'shape' takes"},
       {"stepper = \"euler\"\n" BEAM,
        "scene.toml:1:11: 'stepper' in the scene is \"euler\"; expected one of \"verlet\", "
-       "\"implicit\", \"static\"\n"
+       "\"implicit\", \"static\", \"auto\"\n"
        "  remedy: the default is stepper = \"verlet\""},
       // --- what does not go together ---
+      {"budget_ms = 4\n" BEAM,
+       "scene.toml:1:13: stepper = \"verlet\" knows no budget_ms\n"
+       "  remedy: take stepper = \"implicit\", or leave budget_ms out"},
+      {"stepper = \"implicit\"\nscheme = \"sdirk2\"\nbudget_ms = 4\n" BEAM,
+       "scene.toml:2:10: scheme = \"sdirk2\" does not go with budget_ms\n"
+       "  remedy: leave scheme out: with a budget it is \"backward-euler\""},
+      {"stepper = \"implicit\"\nbudget_ms = 0\n" BEAM,
+       "scene.toml:2:13: 'budget_ms' in the scene is 0; expected > 0 [ms]\n"
+       "  remedy: docs/scene-format.md says what 'budget_ms' takes"},
       {"duration = 1\n",
        "scene.toml: the scene has no body: there is nothing to simulate\n"
        "  remedy: add a table [body.NAME] with mesh = \"file\" or shape = \"beam\""},

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view magic = "SINEWCP3";
+constexpr std::string_view magic = "SINEWCP4";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>
@@ -26,6 +26,8 @@ void visit(Archive& a, Run& r) {
   a.value(r.state.step);
   a.value(r.state.energy.dissipated);
   a.value(r.state.energy.work_in);
+  a.array(r.stepper);
+  a.array(r.stepper_reason);
   a.value(r.frame);
   a.value(r.steps_left);
   a.value(r.steps_to_watch);
@@ -35,6 +37,8 @@ void visit(Archive& a, Run& r) {
   a.value(r.smallest_stable_step);
   a.array(r.stiff_mode);
   a.value(r.step_reductions);
+  a.value(r.step_increases);
+  a.value(r.step_cuts);
   a.value(r.unstable_watches);
   a.value(r.limit_sweeps);
   a.value(r.unmet_limits);
@@ -45,9 +49,18 @@ void visit(Archive& a, Run& r) {
   a.value(r.residual);
   a.value(r.peak_stretch);
   a.value(r.peak_compress);
+  a.value(r.peak_inverted_tets);
   a.value(r.start_energy);
   a.value(r.wall_seconds);
   a.array(r.frame_times);
+  a.value(r.work.seconds);
+  a.value(r.work.steps);
+  a.value(r.work.newton_steps);
+  a.value(r.work.products);
+  a.value(r.work.residual);
+  a.value(r.work.cut_short);
+  a.value(r.frames_cut_short);
+  a.array(r.frame_seconds);
 }
 
 struct Writer {
@@ -56,10 +69,11 @@ struct Writer {
   void value(const T& v) {
     bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
   }
-  template <typename T>
-  void array(const std::vector<T>& v) {
+  template <typename Array>
+  void array(const Array& v) {
     value(static_cast<std::uint64_t>(v.size()));
-    bytes.append(reinterpret_cast<const char*>(v.data()), v.size() * sizeof(T));
+    bytes.append(reinterpret_cast<const char*>(v.data()),
+                 v.size() * sizeof(typename Array::value_type));
   }
 };
 
@@ -73,15 +87,16 @@ struct Reader {
     std::memcpy(&v, bytes.data(), sizeof v);
     bytes.remove_prefix(sizeof v);
   }
-  template <typename T>
-  void array(std::vector<T>& v) {
+  template <typename Array>
+  void array(Array& v) {
+    constexpr std::size_t each = sizeof(typename Array::value_type);
     std::uint64_t size = 0;
     value(size);
-    good = good && size <= bytes.size() / sizeof(T);
+    good = good && size <= bytes.size() / each;
     if (!good) return;
     v.resize(size);
-    if (size > 0) std::memcpy(static_cast<void*>(v.data()), bytes.data(), size * sizeof(T));
-    bytes.remove_prefix(size * sizeof(T));
+    if (size > 0) std::memcpy(static_cast<void*>(v.data()), bytes.data(), size * each);
+    bytes.remove_prefix(size * each);
   }
 };
 

@@ -45,6 +45,9 @@ constexpr std::string_view energy_header =
     "[J],total [J],"
     "volume_ratio,max_stretch,max_compress,contacts";
 
+constexpr std::string_view frames_header =
+    "frame,time [s],wall [ms],steps,newton_steps,products,residual,cut_short";
+
 // The file with its header and, of an earlier run, the first `rows` rows: opened to go on.
 std::ofstream open_table(const fs::path& file, std::string_view header, std::size_t rows) {
   std::string kept = std::string(header) + "\n";
@@ -104,6 +107,7 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
   const std::size_t rows = run.frame_times.size();
   probes_ = open_table(folder_ / "probes.csv", probe_header(model), rows);
   energy_ = open_table(folder_ / "energy.csv", energy_header, rows);
+  frames_ = open_table(folder_ / "frames.csv", frames_header, rows);
 }
 
 void Recorder::record(RunState& run, Workspace& workspace) {
@@ -138,6 +142,11 @@ void Recorder::record(RunState& run, Workspace& workspace) {
           fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", run.state.time, run.step, e.kinetic,
                       e.elastic, e.gravity, e.contact, e.dissipated, e.work_in, e.total(),
                       volume / rest, range.stretch, range.compress, run.contacts));
+  const FrameWork& w = run.work;
+  add_row(
+      frames_, folder_ / "frames.csv",
+      fmt::format("{},{},{:.4f},{},{},{},{:.4g},{}", run.frame, run.state.time, 1e3 * w.seconds,
+                  w.steps, w.newton_steps, w.products, w.residual, w.cut_short > 0 ? "yes" : "no"));
 }
 
 void Recorder::write_frame(const RunState& run, const Workspace& workspace) const {

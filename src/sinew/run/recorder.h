@@ -1,4 +1,5 @@
-// Writes what a run shows: a VTU file per frame with a .pvd over them, probes.csv, energy.csv.
+// Writes what a run shows: a VTU file per frame with a .pvd over them, probes.csv, energy.csv,
+// frames.csv.
 #pragma once
 
 #include <filesystem>
@@ -34,6 +35,7 @@ class Recorder {
   std::string cells_;  // encoded once: they are the same in every frame
   std::ofstream probes_;
   std::ofstream energy_;
+  std::ofstream frames_;
 };
 
 // Stretch of each body node: that of its spring furthest from rest, |x_ij| / l0 - 1 [-].

@@ -18,8 +18,6 @@ namespace sinew {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
-
 constexpr const char* checkpoint_name = "checkpoint.bin";
 constexpr const char* scene_name = "scene.toml";
 constexpr const char* summary_name = "summary.json";
@@ -41,7 +39,7 @@ void prepare_folder(const Scene& scene, const RunOptions& options) {
   std::error_code failed;
   if (has_run) {
     for (const char* name :
-         {checkpoint_name, summary_name, scene_name, "probes.csv", "energy.csv"}) {
+         {checkpoint_name, summary_name, scene_name, "probes.csv", "energy.csv", "frames.csv"}) {
       fs::remove(options.out / name, failed);
     }
     fs::remove_all(options.out / "frames", failed);
@@ -70,6 +68,7 @@ class Runner {
     const double wall_before = run.wall_seconds;
     const double sim_before = run.state.time;
     Stepping stepping(scene_, model_, run);
+    if (options_.on_stepper && !run.stepper_reason.empty()) options_.on_stepper(run.stepper_reason);
     std::optional<Recorder> recorder;
     if (!options_.out.empty()) {
       prepare_folder_once(run);
@@ -124,6 +123,8 @@ class Runner {
     const StretchRange range = measure_stretch(model_, run.state.position);
     run.peak_stretch = std::max(run.peak_stretch, range.stretch);
     run.peak_compress = std::max(run.peak_compress, range.compress);
+    run.peak_inverted_tets =
+        std::max(run.peak_inverted_tets, count_inverted(model_, run.state.position));
     if (recorder) {
       recorder->record(run, workspace);
     } else {
@@ -148,8 +149,8 @@ class Runner {
     if (run.unstable_watches > 0 && !scene_.allow_unstable) {
       s.warnings.push_back(
           fmt::format("the given step {:.4g} s was above the stable one ({:.4g} s at the least) as "
-                      "the body deformed; take dt = \"auto\"",
-                      run.step, run.smallest_stable_step));
+                      "the body deformed, and was divided {} times; take dt = \"auto\"",
+                      *scene_.dt / scene_.substeps, run.smallest_stable_step, run.step_reductions));
     }
     if (run.unmet_limits > 0) {
       s.warnings.push_back(

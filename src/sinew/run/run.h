@@ -28,6 +28,8 @@ struct RunOptions {
   bool force = false;                                // an earlier run in `out` may be replaced
   const std::atomic<bool>* stop = nullptr;           // set it to end after the step under way
   std::function<void(const Progress&)> on_progress;  // called after every frame
+  // stepper = "auto": called before the first step with RunState::stepper_reason.
+  std::function<void(const std::string&)> on_stepper;
 };
 
 enum class RunStatus { finished, interrupted, diverged };
@@ -39,7 +41,7 @@ struct RunResult {
 };
 
 // The folder gets scene.toml (the scene with its overrides, from which it can be resumed),
-// NAME.pvd and frames/*.vtu, probes.csv, energy.csv, checkpoint.bin, summary.json.
+// NAME.pvd and frames/*.vtu, probes.csv, energy.csv, frames.csv, checkpoint.bin, summary.json.
 // Throws Error(input) for a scene that cannot be built, Error(unstable) for a step above the
 // stable one, Error(usage) where `out` holds a run, Error(io). A run that diverges does not throw:
 // its last good frame, checkpoint and summary are kept.

@@ -7,6 +7,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/forces/volume.h"
+#include "sinew/run/choose_stepper.h"
 #include "sinew/solver/verlet.h"
 
 namespace sinew {
@@ -44,17 +45,24 @@ double typed_step(double h) {
       Location{scene.file});
 }
 
-// Rest states and implicit steps are minima of an energy: what acts as a projection after the step
-// is no part of it.
-void refuse_projections(const Scene& scene, const Model& model) {
-  const char* what = model.ground             ? "[ground]"
-                     : !model.limited.empty() ? "stretch_limit and compress_limit"
-                     : model.has_volume_limit ? "volume_limit"
-                                              : nullptr;
+// What acts as a projection after the step, and so is no part of the energy that rest states and
+// implicit steps are minima of; null where the model has no such thing.
+const char* projection_of(const Model& model) {
+  return model.ground             ? "[ground]"
+         : !model.limited.empty() ? "stretch_limit and compress_limit"
+         : model.has_volume_limit ? "volume_limit"
+                                  : nullptr;
+}
+
+void refuse_projections(const Scene& scene, const Model& model, const std::string& stepper) {
+  const char* what = projection_of(model);
   if (what == nullptr) return;
-  throw Error(ErrorKind::input,
-              fmt::format("stepper = \"{}\" does not know {}", scene.stepper, what),
+  throw Error(ErrorKind::input, fmt::format("stepper = \"{}\" does not know {}", stepper, what),
               "take it out of the scene, or take stepper = \"verlet\"", Location{scene.file});
+}
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 // Rest states differ from frame to frame only where pins, loads or obstacles change with time.
@@ -77,45 +85,71 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
     : model_(model),
       workspace_(model),
       automatic_(!scene.dt.has_value()),
+      given_(automatic_ ? 0.0 : *scene.dt / scene.substeps),
       allow_unstable_(scene.allow_unstable),
       safety_(scene.safety),
       duration_(scene.duration),
       interval_(1.0 / scene.output.fps),
       tolerance_(scene.tolerance) {
-  if (scene.stepper == "static") {
-    refuse_projections(scene, model);
+  if (run.stepper.empty() && scene.stepper != "auto") run.stepper = scene.stepper;
+  if (run.stepper == "static") {
+    refuse_projections(scene, model, run.stepper);
     static_ = std::make_unique<StaticSolver>(model);
     if (!changes_with_time(model)) interval_ = duration_;
     frames_ = round_up(duration_ / interval_);
     return;
   }
-  if (scene.stepper == "implicit") {
-    refuse_projections(scene, model);
+  if (scene.budget_ms) budget_ = 1e-3 * *scene.budget_ms;
+  if (!automatic_) interval_ = std::max(interval_, given_);
+  frames_ = round_up(duration_ / interval_);
+  const bool goes_on = run.target_step > 0.0;  // from a checkpoint
+
+  const double implicit_step = !automatic_ ? given_
+                               : budget_   ? interval_
+                                           : std::min(interval_, longest_implicit);
+  if (run.stepper != "verlet") {
     implicit_ = std::make_unique<ImplicitStepper>(model);
     implicit_options_.scheme = scene.scheme == "sdirk2" ? Scheme::sdirk2 : Scheme::backward_euler;
     implicit_options_.tolerance = tolerance_;
   }
-  if (!automatic_) interval_ = std::max(interval_, *scene.dt / scene.substeps);
-  frames_ = round_up(duration_ / interval_);
-  if (run.target_step > 0.0) return;  // goes on from a checkpoint
-  if (implicit_) {
-    run.target_step =
-        automatic_ ? std::min(interval_, longest_implicit) : *scene.dt / scene.substeps;
+  StableStep stable;
+  if (!goes_on && run.stepper != "implicit") {
+    stable = find_stable_step(model, run.state.position, workspace_);
+  }
+  if (run.stepper.empty()) choose(scene, stable, implicit_step, run);
+  if (run.stepper == "implicit") {
+    refuse_projections(scene, model, run.stepper);
+    if (budget_) implicit_->prepare(implicit_step, implicit_options_);
+    if (goes_on) return;
+    run.target_step = implicit_step;
     run.stable_step = run.smallest_stable_step = no_limit;
     return;
   }
-
-  StableStep stable = find_stable_step(model, run.state.position, workspace_);
+  if (goes_on) return;
   run.stable_step = stable.step;
   run.smallest_stable_step = stable.step;
   run.stiff_mode = std::move(stable.mode);
   run.steps_to_watch = watch_interval;
-  if (automatic_) {
-    run.target_step = std::min(safety_ * stable.step, interval_);
-  } else {
-    run.target_step = *scene.dt / scene.substeps;
-    if (run.target_step > stable.step && !allow_unstable_) refuse(scene, model, stable);
+  run.target_step = verlet_step_at(stable.step);
+  if (!automatic_ && run.target_step > stable.step && !allow_unstable_) {
+    refuse(scene, model, stable);
   }
+}
+
+// stepper = "auto"
+void Stepping::choose(const Scene& scene, const StableStep& stable, double implicit_step,
+                      RunState& run) {
+  const Contest contest{interval_, verlet_step_at(stable.step), stable.step, implicit_step,
+                        projection_of(model_)};
+  Choice choice = choose_stepper(scene, model_, run.state, contest, implicit_options_, *implicit_);
+  run.stepper = std::move(choice.stepper);
+  run.stepper_reason = std::move(choice.reason);
+  if (run.stepper == "verlet") implicit_.reset();
+}
+
+// What Verlet's step is at the start, where the stable one is `stable`.
+double Stepping::verlet_step_at(double stable) const {
+  return automatic_ ? std::min(safety_ * stable, interval_) : given_;
 }
 
 double Stepping::frame_end(std::int64_t frame) const {
@@ -123,16 +157,20 @@ double Stepping::frame_end(std::int64_t frame) const {
 }
 
 void Stepping::begin_frame(RunState& run) const {
+  run.work = {};
   const double end = frame_end(run.frame + 1);
-  if (automatic_) {
-    const double span = end - run.state.time;
-    run.steps_left = round_up(span / run.target_step);
-    run.step = span / static_cast<double>(run.steps_left);
-  } else {
-    // Frame f ends with the step nearest to its time, counted from the start: nothing adds up.
-    run.step = run.target_step;
-    run.steps_left = std::max<std::int64_t>(1, std::llround(end / run.step)) - run.state.step;
+  double span = end - run.state.time;
+  if (!automatic_) {
+    // A frame ends with the given step nearest to its time, counted from the start: nothing adds
+    // up.
+    run.steps_left = std::max<std::int64_t>(1, std::llround(end / given_)) -
+                     std::llround(run.state.time / given_);
+    run.step = given_;
+    span = given_ * static_cast<double>(run.steps_left);
+    if (run.target_step >= given_ || run.steps_left == 0) return;
   }
+  run.steps_left = round_up(span / run.target_step);
+  run.step = span / static_cast<double>(run.steps_left);
 }
 
 // Takes at most `step` for the rest of the frame.
@@ -151,7 +189,13 @@ void Stepping::watch_guard(RunState& run) const {
   const double omega = 2.0 / run.stable_step;
   const double stable = 2.0 / std::sqrt(omega * omega + omega2);
   run.smallest_stable_step = std::min(run.smallest_stable_step, stable);
-  if (run.step > safety_ * stable) shorten(run, safety_ * stable);
+  if (too_long(run, stable, 1.0)) shorten(run, safety_ * stable);
+}
+
+// A step that Sinew chose keeps its margin to the stable one; a given one may use all of it.
+bool Stepping::too_long(const RunState& run, double stable, double slack) const {
+  if (automatic_ || run.target_step < given_) return run.step > slack * safety_ * stable;
+  return run.step > stable && !allow_unstable_;
 }
 
 void Stepping::watch(RunState& run) {
@@ -160,14 +204,15 @@ void Stepping::watch(RunState& run) {
   run.stable_step =
       watch_stable_step(model_, run.state.position, run.step, run.stiff_mode, workspace_);
   run.smallest_stable_step = std::min(run.smallest_stable_step, run.stable_step);
-  const double wish = std::min(safety_ * run.stable_step, interval_);
-  if (!automatic_) {
-    if (run.step > run.stable_step) ++run.unstable_watches;
-  } else if (run.step > 1.03 * wish) {
+  if (!automatic_ && run.step > run.stable_step) ++run.unstable_watches;
+  const double longest = automatic_ ? interval_ : given_;
+  const double wish = std::min(safety_ * run.stable_step, longest);
+  if (too_long(run, run.stable_step, 1.03)) {
     // The margin is being eaten up: shorten the rest of the frame.
     shorten(run, wish);
-  } else if (wish > 1.25 * run.target_step) {
+  } else if (wish > 1.25 * run.target_step || (wish == longest && wish > run.target_step)) {
     run.target_step = wish;  // from the next frame on
+    ++run.step_increases;
   }
 }
 
@@ -175,41 +220,74 @@ bool Stepping::rest_frame(RunState& run, const std::atomic<bool>* stop) {
   StaticOptions options;
   options.tolerance = tolerance_;
   options.stop = stop;
+  const Clock::time_point start = Clock::now();
   const StaticReport report = static_->solve(frame_end(run.frame + 1), options, run.state);
   run.newton_steps += report.newton;
   run.products += report.products;
   run.residual = report.residual;
+  run.work = {seconds_since(start), 1, report.newton, report.products, report.residual, 0};
   if (report.stopped) return false;
   ++run.frame;
   return true;
 }
 
-bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
-  if (static_) return rest_frame(run, stop);
-  if (run.steps_left == 0) begin_frame(run);
-  while (implicit_ && run.steps_left > 0) {
-    const ImplicitReport report = implicit_->step(run.step, implicit_options_, run.state);
+void Stepping::implicit_steps(RunState& run, const std::atomic<bool>* stop) {
+  while (run.steps_left > 0) {
+    const Clock::time_point start = Clock::now();
+    ImplicitOptions options = implicit_options_;
+    if (budget_) {  // an equal share of what is left
+      const std::chrono::duration<double> share((*budget_ - run.work.seconds) /
+                                                static_cast<double>(run.steps_left));
+      options.deadline = start + std::chrono::duration_cast<Clock::duration>(share);
+    }
+    const ImplicitReport report = implicit_->step(run.step, options, run.state);
     --run.steps_left;
     run.newton_steps += report.newton;
     run.products += report.products;
     run.residual = std::max(run.residual, report.residual);
-    run.step_reductions += report.cuts;
-    if (run.steps_left > 0 && stop != nullptr && stop->load()) return false;
+    run.step_cuts += report.cuts;
+    ++run.work.steps;
+    run.work.newton_steps += report.newton;
+    run.work.products += report.products;
+    run.work.residual = std::max(run.work.residual, report.residual);
+    run.work.cut_short += report.ran_out ? 1 : 0;
+    run.work.seconds += seconds_since(start);
+    if (stop != nullptr && stop->load()) return;
   }
+}
+
+void Stepping::verlet_steps(RunState& run, const std::atomic<bool>* stop) {
+  const Clock::time_point start = Clock::now();
+  const double before = run.work.seconds;
   while (run.steps_left > 0) {
     if (run.steps_to_watch == 0) watch(run);
     const VerletReport report = verlet_step(model_, run.step, run.state, workspace_);
     --run.steps_left;
     --run.steps_to_watch;
-    if (automatic_ && model_.has_volume && run.steps_left > 0) watch_guard(run);
+    if (model_.has_volume && run.steps_left > 0) watch_guard(run);
     run.contacts = report.contacts;
     run.limit_sweeps += report.limit_sweeps;
     run.righting_steps += report.righted > 0 ? 1 : 0;
     run.unmet_limits += report.limits_met && report.volume_met ? 0 : 1;
-    if (run.steps_left > 0 && stop != nullptr && stop->load()) return false;
+    ++run.work.steps;
+    run.work.seconds = before + seconds_since(start);
+    if (stop != nullptr && stop->load()) return;
   }
+}
+
+bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
+  if (static_) return rest_frame(run, stop);
+  if (run.steps_left == 0) begin_frame(run);
+  if (implicit_) {
+    implicit_steps(run, stop);
+  } else {
+    verlet_steps(run, stop);
+  }
+  if (run.steps_left > 0) return false;
   ++run.frame;
   if (automatic_) run.state.time = frame_end(run.frame);
+  if (budget_) run.frame_seconds.push_back(run.work.seconds);
+  run.frames_cut_short += run.work.cut_short > 0 ? 1 : 0;
   return true;
 }
 

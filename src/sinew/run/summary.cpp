@@ -1,5 +1,6 @@
 #include "sinew/run/summary.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "sinew/base/hash.h"
@@ -30,7 +31,36 @@ BodySummary summarize_body(const Model& model, const Body& body, const std::stri
   return s;
 }
 
+BudgetSummary summarize_budget(double budget_ms, const RunState& run) {
+  BudgetSummary s;
+  s.ms = budget_ms;
+  s.cut_short = run.frames_cut_short;
+  s.largest_residual = run.residual;
+  std::vector<double> ms;
+  for (const double seconds : run.frame_seconds) ms.push_back(1e3 * seconds);
+  std::sort(ms.begin(), ms.end());
+  if (ms.empty()) return s;
+  s.late = ms.end() - std::upper_bound(ms.begin(), ms.end(), budget_ms);
+  s.largest_ms = ms.back();
+  s.percentile_99_ms = ms[(99 * ms.size() + 99) / 100 - 1];
+  return s;
+}
+
+nlohmann::ordered_json to_json(const BudgetSummary& s) {
+  return {{"ms", s.ms},
+          {"cut_short", s.cut_short},
+          {"late", s.late},
+          {"largest_ms", s.largest_ms},
+          {"percentile_99_ms", s.percentile_99_ms},
+          {"largest_residual", s.largest_residual}};
+}
+
 }  // namespace
+
+std::int64_t count_inverted(const Model& model, const std::vector<Vec3>& x) {
+  return std::count_if(model.tets.begin(), model.tets.end(),
+                       [&](const Tet& t) { return signed_volume(x, t) < 0.0; });
+}
 
 std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3>& x) {
   std::vector<ProbeReading> readings;
@@ -71,10 +101,13 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
     volume += s.bodies.back().rest_volume * s.bodies.back().volume_ratio;
   }
   s.volume_ratio = volume / rest_volume;
-  for (const Tet& t : model.tets) s.inverted_tets += signed_volume(x, t) < 0.0 ? 1 : 0;
+  s.inverted_tets = count_inverted(model, x);
+  s.peak_inverted_tets = run.peak_inverted_tets;
   s.nodes = model.body_node_count();
   s.springs = model.spring_count();
-  s.stepper = scene.stepper;
+  s.stepper = run.stepper;
+  s.stepper_asked = scene.stepper;
+  s.stepper_reason = run.stepper_reason;
   s.dt_auto = !scene.dt.has_value();
   s.dt = run.step > 0.0 ? run.step : run.target_step;
   s.stable_step = run.smallest_stable_step;
@@ -95,6 +128,9 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.righting_steps = run.righting_steps;
   s.limit_violation = measure_limit_violation(model, x);
   s.step_reductions = run.step_reductions;
+  s.step_increases = run.step_increases;
+  s.step_cuts = run.step_cuts;
+  if (scene.budget_ms) s.budget = summarize_budget(*scene.budget_ms, run);
   s.newton_steps = run.newton_steps;
   s.products = run.products;
   s.residual = run.residual;
@@ -140,11 +176,17 @@ nlohmann::ordered_json to_json(const Summary& s) {
           {"bodies", bodies},
           {"laws", laws},
           {"stepper", s.stepper},
+          {"stepper_asked", s.stepper_asked},
+          {"stepper_reason", s.stepper_reason},
           {"dt", s.dt},
           {"dt_auto", s.dt_auto},
           {"stable_step", std::isfinite(s.stable_step) ? nlohmann::ordered_json(s.stable_step)
                                                        : nlohmann::ordered_json()},
           {"step_reductions", s.step_reductions},
+          {"step_increases", s.step_increases},
+          {"step_cuts", s.step_cuts},
+          {"reproducible", !s.budget},
+          {"budget", s.budget ? to_json(*s.budget) : nlohmann::ordered_json()},
           {"static",
            {{"newton_steps", s.newton_steps}, {"products", s.products}, {"residual", s.residual}}},
           {"steps", s.steps},
@@ -163,6 +205,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
           {"volume_ratio", s.volume_ratio},
           {"largest_cell_change", s.largest_cell_change},
           {"inverted_tets", s.inverted_tets},
+          {"peak_inverted_tets", s.peak_inverted_tets},
           {"righting_steps", s.righting_steps},
           {"max_stretch", s.max_stretch},
           {"max_compress", s.max_compress},

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -28,13 +29,24 @@ struct BodySummary {
   double volume_ratio = 1.0;  // current over rest volume [-]
 };
 
+// What became of budget_ms.
+struct BudgetSummary {
+  double ms = 0.0;                                  // of wall time that the steps of a frame had
+  std::int64_t cut_short = 0;                       // frames with a step that ran out of time
+  std::int64_t late = 0;                            // frames that took longer
+  double largest_ms = 0.0, percentile_99_ms = 0.0;  // of the frames
+  double largest_residual = 0.0;                    // of the steps, see NewtonReport::residual
+};
+
 struct Summary {
   std::string status;  // finished, interrupted, diverged
   std::string scene, title, look_for;
   std::string scene_hash, model_hash, state_hash;
   std::vector<BodySummary> bodies;
   Index nodes = 0, tets = 0, springs = 0;
-  std::string stepper;
+  std::string stepper;         // the one that ran
+  std::string stepper_asked;   // of the scene
+  std::string stepper_reason;  // of stepper = "auto"
   bool dt_auto = true;
   double dt = 0.0;           // the step last taken [s]
   double stable_step = 0.0;  // the smallest seen in the run [s]
@@ -43,15 +55,17 @@ struct Summary {
   double sim_seconds = 0.0;
   double wall_seconds = 0.0;
   Energies energy;
-  double energy_drift = 0.0;  // change of the account's total since the start [J]
-  double volume_ratio = 1.0;  // of all bodies together [-]
-  Index inverted_tets = 0;    // at the end
+  double energy_drift = 0.0;            // change of the account's total since the start [J]
+  double volume_ratio = 1.0;            // of all bodies together [-]
+  std::int64_t inverted_tets = 0;       // at the end
+  std::int64_t peak_inverted_tets = 0;  // the most in any frame
   double max_stretch = 0.0, max_compress = 0.0;    // at the end, as a share of the rest length
   double peak_stretch = 0.0, peak_compress = 0.0;  // the largest of all frames
   std::int64_t contacts = 0;                       // nodes on the ground at the end
   std::int64_t limit_sweeps = 0, unmet_limits = 0, righting_steps = 0;
   double limit_violation = 0.0;  // at the end, as a share of the rest length
-  std::int64_t step_reductions = 0;
+  std::int64_t step_reductions = 0, step_increases = 0, step_cuts = 0;  // see RunState
+  std::optional<BudgetSummary> budget;
   std::int64_t newton_steps = 0, products = 0;  // static
   double residual = 0.0;                        // static: |f| over what the nodes carry
   double largest_cell_change = 0.0;             // of a node cell's volume, at the end [-]
@@ -61,6 +75,9 @@ struct Summary {
 
   double realtime_factor() const { return wall_seconds > 0.0 ? sim_seconds / wall_seconds : 0.0; }
 };
+
+// Tets with v_t < 0 at positions x.
+std::int64_t count_inverted(const Model& model, const std::vector<Vec3>& x);
 
 // The probes' means at positions x.
 std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3>& x);

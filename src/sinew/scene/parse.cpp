@@ -66,6 +66,18 @@ void refuse_shared_columns(const Scene& scene, const Reader& root) {
                   "they share the table probes.csv: rename one of them");
 }
 
+// A step cut off by its budget is stable because it still lowers the potential of backward Euler;
+// SDIRK2 builds its second part on a first one that has come to its end.
+void parse_budget(const Reader& root, Scene& scene) {
+  if (scene.stepper != "implicit" && scene.stepper != "auto")
+    root.fail("budget_ms", fmt::format("stepper = \"{}\" knows no budget_ms", scene.stepper),
+              "take stepper = \"implicit\", or leave budget_ms out");
+  if (root.word("scheme") == "sdirk2")
+    root.fail("scheme", "scheme = \"sdirk2\" does not go with budget_ms",
+              "leave scheme out: with a budget it is \"backward-euler\"");
+  scene.scheme = "backward-euler";
+}
+
 Scene parse_root(const DocValue& document) {
   const Reader root(document, "the scene", {&key_tables().scene});
   Scene scene;
@@ -77,6 +89,7 @@ Scene parse_root(const DocValue& document) {
   if (const auto stepper = root.word("stepper")) scene.stepper = *stepper;
   if (const auto scheme = root.word("scheme")) scene.scheme = *scheme;
   root.number("tolerance", scene.tolerance);
+  if (root.number("budget_ms", scene.budget_ms)) parse_budget(root, scene);
   if (!root.word("dt")) root.number("dt", scene.dt);
   root.integer("substeps", scene.substeps);
   root.number("safety", scene.safety);

@@ -15,6 +15,8 @@ namespace {
 
 constexpr int most_cuts = 10;
 
+const double sdirk2_share = 1.0 - std::sqrt(0.5);  // g: of a step, that each of its parts solves
+
 // a x + b y of all nodes.
 Field blend(double a, const Field& x, double b, const Field& y) {
   Field out(x.size());
@@ -54,6 +56,11 @@ double work_of_the_outside(const Model& model, const Field& before, const State&
 ImplicitStepper::ImplicitStepper(const Model& model)
     : model_(model), workspace_(model), linear_(model) {}
 
+void ImplicitStepper::prepare(double h, const ImplicitOptions& options) {
+  if (options.scheme == Scheme::sdirk2) h *= sdirk2_share;
+  linear_.factor({.model = model_, .inertia = 1.0 / (h * h), .rate = 1.0 / h}, workspace_);
+}
+
 // Backward Euler over h from the positions `from` with `velocity`, dashpots in their directions at
 // state.position; loads and pins as they are at state.time. Moves the state's positions and sets
 // its velocities.
@@ -73,12 +80,14 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   if (!(objective_value(objective, state, workspace_) < standing)) state.position = stand;
 
   const NewtonReport newton = minimise(
-      objective, linear_, {options.tolerance, options.max_newton, nullptr, {}}, workspace_, state);
+      objective, linear_, {options.tolerance, options.max_newton, nullptr, {}, options.deadline},
+      workspace_, state);
   report.newton += newton.newton;
   report.products += newton.products;
   report.residual = std::max(report.residual, newton.residual);
+  report.ran_out = report.ran_out || newton.ran_out;
   state.half_velocity = blend(1.0 / h, state.position, -1.0 / h, from);
-  return newton.rests;
+  return newton.rests || (options.deadline && newton.force < no_limit);
 }
 
 bool ImplicitStepper::try_step(double h, const ImplicitOptions& options, State& state,
@@ -93,7 +102,7 @@ bool ImplicitStepper::try_step(double h, const ImplicitOptions& options, State& 
     s.energy.work_in += work_of_the_outside(model_, before, s, workspace_);
   };
   if (options.scheme == Scheme::sdirk2) {
-    const double g = 1.0 - std::sqrt(0.5);
+    const double g = sdirk2_share;
     state.time = time + g * h;
     if (!solve(x, v, g * h, options, state, report)) return false;
     const Field v1 = state.half_velocity;

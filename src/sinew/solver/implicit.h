@@ -16,6 +16,7 @@ struct ImplicitOptions {
   Scheme scheme = Scheme::sdirk2;
   double tolerance = 1e-6;  // see NewtonReport::residual
   int max_newton = 50;      // Newton steps before the step is cut in half
+  Deadline deadline = {};   // of the step; what is there then is the step, however far it is
 };
 
 struct ImplicitReport {
@@ -23,6 +24,7 @@ struct ImplicitReport {
   int products = 0;       // Hessian products
   int cuts = 0;           // steps that were cut in half
   double residual = 0.0;  // the largest that was left [-]
+  bool ran_out = false;   // of time, see ImplicitOptions::deadline
 };
 
 class ImplicitStepper {
@@ -40,8 +42,12 @@ class ImplicitStepper {
   // Dashpots and drag see the velocity at the end of the (part) step.
   //
   // Where Newton's method does not arrive, the step is taken in two halves, and so on. Throws
-  // Error(diverged) where ten halvings are not enough.
+  // Error(diverged) where ten halvings are not enough. With a deadline the step is what Newton's
+  // method has by then, and no step is cut: its potential is below that of standing still.
   ImplicitReport step(double h, const ImplicitOptions& options, State& state);
+
+  // Makes what steps of length h need and a deadline should not pay for.
+  void prepare(double h, const ImplicitOptions& options);
 
   Workspace& workspace() { return workspace_; }
 

@@ -15,24 +15,34 @@ LinearSolver::LinearSolver(const Model& model)
       q_(r_),
       p_(r_) {}
 
+void LinearSolver::factor(const Objective& objective, Workspace& workspace) {
+  if (is_factored(objective)) return;
+  const Field& rest_position = objective.model.rest_position;
+  Objective rest = objective;
+  rest.lag = &rest_position;
+  prepare_stiffness(objective.model, rest_position, workspace);
+  matrix_.assemble(rest, rest_position, workspace);
+  preconditioner_.factor(matrix_);
+  factored_model_ = &objective.model;
+  factored_inertia_ = objective.inertia;
+}
+
+bool LinearSolver::is_factored(const Objective& objective) const {
+  return factored_model_ == &objective.model &&
+         std::abs(factored_inertia_ - objective.inertia) <= 1e-6 * objective.inertia;
+}
+
 void LinearSolver::assemble(const Objective& objective, const Field& x, Workspace& workspace) {
-  const Model& model = objective.model;
-  if (factored_model_ != &model ||
-      std::abs(factored_inertia_ - objective.inertia) > 1e-6 * objective.inertia) {
-    Objective rest = objective;
-    rest.lag = &model.rest_position;
-    prepare_stiffness(model, model.rest_position, workspace);
-    matrix_.assemble(rest, model.rest_position, workspace);
-    preconditioner_.factor(matrix_);
-    factored_model_ = &model;
-    factored_inertia_ = objective.inertia;
+  if (!is_factored(objective)) {
+    factor(objective, workspace);
+    prepare_stiffness(objective.model, x, workspace);
   }
-  prepare_stiffness(model, x, workspace);
   matrix_.assemble(objective, x, workspace);
   preconditioner_.turn(x);
 }
 
-int LinearSolver::solve(const Field& r, double forcing, int most, Field& p) {
+int LinearSolver::solve(const Field& r, double forcing, int most, const Deadline& deadline,
+                        Field& p) {
   const auto nodes = static_cast<Index>(r.size());
   const double size = std::sqrt(dot(r, r));
   p.assign(r.size(), Vec3::Zero());
@@ -57,7 +67,7 @@ int LinearSolver::solve(const Field& r, double forcing, int most, Field& p) {
       r_[uz(i)] = r_[uz(i)] - alpha * q_[uz(i)];
       return static_cast<double>(r_[uz(i)].dot(r_[uz(i)]));
     });
-    if (!(std::sqrt(left) > forcing)) break;
+    if (!(std::sqrt(left) > forcing) || passed(deadline)) break;
     const double next = preconditioner_.apply(matrix_, r_, z_);
     const auto beta = static_cast<float>(next / rz);
     rz = next;

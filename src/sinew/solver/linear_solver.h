@@ -14,17 +14,23 @@ class LinearSolver {
  public:
   explicit LinearSolver(const Model& model);
 
+  // Factors the preconditioner for the objective's tangent at rest; nothing where it is factored
+  // for the same model and inertia. Leaves the workspace at rest.
+  void factor(const Objective& objective, Workspace& workspace);
+
   // Makes the tangent K of the objective at positions x the matrix, and factors the preconditioner
-  // where stiffness, step or damping differ from those that it was factored for. Leaves in the
-  // workspace what prepare_stiffness does at x.
+  // if need be. Expects the workspace, and leaves it, as prepare_stiffness does at x.
   void assemble(const Objective& objective, const Field& x, Workspace& workspace);
 
   // An approximate solution p of K p = r, 0 on nodes whose motion is given: stops at
-  // |K p - r| <= forcing |r|, after `most` products, or where K turns out not to be positive; p is
-  // then the best so far, and r . p > 0 all the same (Steihaug 1983). Returns the products taken.
-  int solve(const Field& r, double forcing, int most, Field& p);
+  // |K p - r| <= forcing |r|, after `most` products, after the product at which the deadline
+  // passes, or where K turns out not to be positive; p is then the best so far, and r . p > 0 all
+  // the same (Steihaug 1983). Returns the products taken.
+  int solve(const Field& r, double forcing, int most, const Deadline& deadline, Field& p);
 
  private:
+  bool is_factored(const Objective& objective) const;
+
   TangentMatrix matrix_;
   TwoLevel preconditioner_;
   const Model* factored_model_ = nullptr;  // what preconditioner_ was factored for

@@ -238,7 +238,11 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
   const Reach reach(objective.model, state);
   const double material = material_pull2(objective.model);
   const double rounding = rounding_force(objective, state);
+  const Clock::time_point start = Clock::now();
   Field f = objective_force(objective, state, workspace);
+  Deadline deadline = options.deadline;
+  // The line search and the force where it ends take about three evaluations such as this one.
+  if (deadline) *deadline -= 3 * (Clock::now() - start);
   Field p;
   for (;;) {
     report.force = std::sqrt(dot(f, f));
@@ -249,9 +253,11 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
     report.rests = report.force <= std::max(options.tolerance * scale, rounding);
     report.stopped = options.stop != nullptr && options.stop->load();
     if (report.rests || report.stopped || report.newton == options.most) return report;
+    report.ran_out = report.newton > 0 && passed(deadline);
+    if (report.ran_out) return report;
     const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.1);
     linear.assemble(objective, state.position, workspace);
-    report.products += linear.solve(f, forcing, most_products, p);
+    report.products += linear.solve(f, forcing, most_products, deadline, p);
     ++report.newton;
     if (!line_search(objective, p, workspace, f, state)) return report;
   }

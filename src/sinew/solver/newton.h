@@ -8,6 +8,7 @@
 
 #include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
+#include "sinew/solver/deadline.h"
 
 namespace sinew {
 
@@ -52,11 +53,14 @@ struct NewtonOptions {
   int most = 100;           // Newton steps
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const NewtonProgress&)> on_progress;
+  // What is there then is kept. One product is always taken, and the search along its direction.
+  Deadline deadline = {};
 };
 
 struct NewtonReport {
   bool rests = false;     // the residual was reached
   bool stopped = false;   // by options.stop
+  bool ran_out = false;   // of time, see options.deadline
   int newton = 0;         // steps taken
   int products = 0;       // Hessian products taken by the conjugate gradients
   double force = 0.0;     // |force| left [N]

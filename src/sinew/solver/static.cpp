@@ -132,6 +132,7 @@ int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Ve
   double goal = 0.0;
   double before = no_limit;
   int products = 0;
+  prepare_stiffness(model_, x, workspace_);
   linear_.assemble(Objective{model_}, x, workspace_);
   while (products < most) {
     stiffness_damping_times(model_, x, 1.0, 0.0, u, Tangent::full, workspace_, q);
@@ -145,7 +146,7 @@ int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Ve
     if (goal == 0.0) goal = tolerance * left;
     if (left <= goal || left > 0.5 * before) break;
     before = left;
-    products += linear_.solve(r, std::max(each, 0.5 * goal / left), most, p);
+    products += linear_.solve(r, std::max(each, 0.5 * goal / left), most, {}, p);
     add(u, 1.0, p);
   }
   return products;

@@ -1,0 +1,81 @@
+#include "sinew/run/choose_stepper.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "sinew/base/error.h"
+#include "sinew/forces/righting.h"
+#include "sinew/forces/volume.h"
+
+namespace sinew {
+namespace {
+
+// Long enough that the first of them, which finds the loads new, does not decide alone.
+constexpr int trial_steps = 4;
+
+bool starts_tangled(const Model& model, const State& start, Workspace& workspace) {
+  if (!model.has_volume) return false;
+  compute_volume_pressures(model, start.position, workspace);
+  return find_tangled(model, workspace) > 0;
+}
+
+struct Trial {
+  double newton = 0.0;    // Newton steps a frame
+  double products = 0.0;  // Hessian products a frame
+  double work = 0.0;      // of a frame, in steps of Verlet
+};
+
+// Nothing where a step finds no equilibrium.
+std::optional<Trial> try_implicit(const Contest& contest, const ImplicitOptions& options,
+                                  State state, ImplicitStepper& stepper) {
+  Trial trial;
+  try {
+    for (int i = 0; i < trial_steps; ++i) {
+      const ImplicitReport report = stepper.step(contest.implicit_step, options, state);
+      trial.newton += report.newton;
+      trial.products += report.products;
+    }
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::diverged) throw;
+    return std::nullopt;
+  }
+  const double per_frame = contest.interval / (trial_steps * contest.implicit_step);
+  trial.newton *= per_frame;
+  trial.products *= per_frame;
+  trial.work = newton_cost * trial.newton + product_cost * trial.products;
+  return trial;
+}
+
+}  // namespace
+
+Choice choose_stepper(const Scene& scene, const Model& model, const State& start,
+                      const Contest& contest, const ImplicitOptions& options,
+                      ImplicitStepper& stepper) {
+  if (scene.budget_ms) return {"implicit", "implicit: only it keeps to budget_ms"};
+  if (contest.projection != nullptr) {
+    return {"verlet", fmt::format("verlet: implicit steps do not know {}", contest.projection)};
+  }
+  if (starts_tangled(model, start, stepper.workspace())) {
+    return {"verlet", "verlet: only it leads a body back that starts inside out"};
+  }
+  if (!std::isfinite(contest.stable_step)) return {"verlet", "verlet: nothing can move"};
+  if (scene.dt && contest.verlet_step > contest.stable_step) {
+    return {"implicit", fmt::format("implicit: the given step {:.3g} s is above the stable one, "
+                                    "{:.3g} s",
+                                    contest.verlet_step, contest.stable_step)};
+  }
+  const double verlet_work = std::ceil(contest.interval / contest.verlet_step);
+  const std::string verlet = fmt::format("verlet: stable step {:.3g} ms, {:.0f} steps a frame",
+                                         1e3 * contest.stable_step, verlet_work);
+  const auto trial = try_implicit(contest, options, start, stepper);
+  if (!trial) return {"verlet", verlet + "; implicit: a trial step found no equilibrium"};
+  return {trial->work < verlet_work ? "implicit" : "verlet",
+          fmt::format("{}; implicit: {:.1f} Newton steps and {:.1f} products a frame, the work of "
+                      "{:.0f} steps of Verlet",
+                      verlet, trial->newton, trial->products, trial->work)};
+}
+
+}  // namespace sinew
