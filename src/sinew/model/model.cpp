@@ -36,6 +36,8 @@ std::uint64_t Model::hash() const {
   h.array(start_position);
   h.array(tets);
   h.array(tet_region);
+  h.array(tet_viscosity);
+  h.array(tet_metric);
   h.array(springs);
   h.array(stiffness);
   h.array(rest_length);

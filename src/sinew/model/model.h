@@ -79,9 +79,11 @@ struct Model {
   std::vector<Vec3> start_position;  // [m] (nodes of bodies); empty: rest_position
 
   // --- tets ---
-  std::vector<Tet> tets;            // node ids (tets)
-  std::vector<double> rest_volume;  // V [m3] (tets)
-  std::vector<int> tet_region;      // index into the body's regions (tets)
+  std::vector<Tet> tets;              // node ids (tets)
+  std::vector<double> rest_volume;    // V [m3] (tets)
+  std::vector<int> tet_region;        // index into the body's regions (tets)
+  std::vector<double> tet_viscosity;  // eta in shear [Pa s] (tets); empty: none is viscous
+  std::vector<Mat3> tet_metric;  // G_a . G_b of corners 1 to 3 [1/m2] (tets); empty as viscosity
 
   // --- springs: those of the bodies, body by body, then attachments ---
   std::vector<Edge> springs;           // node ids (springs)

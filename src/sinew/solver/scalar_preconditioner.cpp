@@ -50,11 +50,13 @@ ScalarPreconditioner::ScalarPreconditioner(const Model& model, double inertia, d
       entries.emplace_back(f.row[uz(j)], i, -k);
     }
   };
-  for (Index t = 0; t < model.tet_count() && model.has_volume; ++t) {
-    if (model.tet_shear[uz(t)] == 0.0) continue;
+  for (Index t = 0; t < model.tet_count(); ++t) {
+    const double viscosity = model.tet_viscosity.empty() ? 0.0 : model.tet_viscosity[uz(t)];
+    const double shear = model.tet_shear[uz(t)] + rate * viscosity;
+    if (shear == 0.0) continue;
     const Tet& tet = model.tets[uz(t)];
     const auto g = shape_gradients(model.rest_position, tet);
-    const double weight = model.tet_shear[uz(t)] * model.rest_volume[uz(t)];
+    const double weight = shear * model.rest_volume[uz(t)];
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = a + 1; b < 4; ++b) add(tet[a], tet[b], -weight * g[a].dot(g[b]));
     }

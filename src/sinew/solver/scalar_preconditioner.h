@@ -11,10 +11,10 @@ namespace sinew {
 
 class ScalarPreconditioner {
  public:
-  // Factors sum over tets of mu_t V_t G_a . G_b plus the springs' k + rate c as a Laplacian, with
-  // (inertia + rate drag) m on its diagonal; rows of nodes whose motion is given left out. Above
-  // `direct_limit` free nodes only its diagonal is used. inertia [1/s2] and rate [1/s] are those of
-  // an implicit step (newton.h), 0 for rest states.
+  // Factors sum over tets of (mu_t + rate eta_t) V_t G_a . G_b plus the springs' k + rate c as a
+  // Laplacian, with (inertia + rate drag) m on its diagonal; rows of nodes whose motion is given
+  // left out. Above `direct_limit` free nodes only its diagonal is used. inertia [1/s2] and rate
+  // [1/s] are those of an implicit step (newton.h), 0 for rest states.
   explicit ScalarPreconditioner(const Model& model, double inertia = 0.0, double rate = 0.0,
                                 Index direct_limit = 60000);
   ~ScalarPreconditioner();
