@@ -16,9 +16,10 @@ namespace {
 using Field = std::vector<Vec3>;
 
 // A box of 0.1 m on an irregular mesh that only its viscosity of 20 Pa s damps.
-Model viscous_box(Law law = Law::neo_hookean) {
+Model viscous_box(Law law = Law::neo_hookean, double beta = -1.0) {
   Material material;
   material.law = law;
+  material.beta = beta;
   material.damping_ratio = 0.0;
   material.viscosity = 20.0;
   BodySpec spec;
@@ -31,6 +32,12 @@ Model viscous_box(Law law = Law::neo_hookean) {
   add_body(m, spec);
   finish(m);
   return m;
+}
+
+Mat3 edges_of(const Field& x, const Tet& t) {
+  Mat3 edges;
+  edges << x[uz(t[1])] - x[uz(t[0])], x[uz(t[2])] - x[uz(t[0])], x[uz(t[3])] - x[uz(t[0])];
+  return edges;
 }
 
 Field affine(const Field& X, const Mat3& A) {
@@ -78,15 +85,16 @@ TEST(Viscosity, ForceIsMinusTheGradientOfTheDissipation) {
   }
 }
 
-TEST(Viscosity, ForceIsThatOfTheFormulaWithF) {  // -2 eta V F (dE/dt) G_a, written out
-  const Model m = viscous_box();
+// beta = 1: on tets alone; -2 eta V F (dE/dt) G_a, written out with matrices of edges.
+TEST(Viscosity, OfTetsIsThatOfTheFormula) {
+  const Model m = viscous_box(Law::neo_hookean, 1.0);
   const Field x = shaken(m.rest_position, 0.02);
   const Field v = scattered(x.size(), 1.0, 50);
   Field expected(x.size(), Vec3::Zero());
   for (std::size_t t = 0; t < m.tets.size(); ++t) {
-    const Mat3 B = tet_edges(m.rest_position, m.tets[t]).inverse();
-    const Mat3 F = tet_edges(x, m.tets[t]) * B;
-    const Mat3 rate = F.transpose() * tet_edges(v, m.tets[t]) * B;
+    const Mat3 B = edges_of(m.rest_position, m.tets[t]).inverse();
+    const Mat3 F = edges_of(x, m.tets[t]) * B;
+    const Mat3 rate = F.transpose() * edges_of(v, m.tets[t]) * B;
     const Mat3 stress = F * 20.0 * (rate + rate.transpose());
     const Mat3 pull = -m.rest_volume[t] * stress * B.transpose();
     expected[uz(m.tets[t][0])] -= pull.rowwise().sum();

@@ -173,7 +173,8 @@ void add_body(Model& model, const BodySpec& spec) {
   body.springs.end = model.spring_count();
   add_network(model, spec.mesh, spec.materials, spec.tet_region, body.nodes.begin);
   add_volume_terms(model, body, spec.materials);
-  add_viscosity(model, body, spec.materials, longest_side(spec.mesh.nodes, spec.rotation));
+  add_viscosity(model, spec.mesh, spec.materials, spec.tet_region, body.nodes.begin,
+                longest_side(spec.mesh.nodes, spec.rotation));
   model.first_attachment = model.spring_count();
 
   double mass = 0.0;
@@ -303,6 +304,7 @@ void finish(Model& model) {
     model.network_start.resize(model.rest_position.size() + 1, model.network_start.back());
   }
   finish_volume_terms(model);
+  finish_viscosity(model);
   find_active_springs(model);
   list_springs_of_nodes(model);
   colour_limited_springs(model);

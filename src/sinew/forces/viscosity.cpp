@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "sinew/base/parallel.h"
+#include "sinew/forces/edge_cells.h"
 #include "sinew/forces/network.h"
 
 namespace sinew {
@@ -29,64 +30,117 @@ double longest_side(std::span<const Vec3> nodes, const Eigen::Quaterniond& rotat
   return (high - low).maxCoeff();
 }
 
-void add_viscosity(Model& model, const Body& body, const std::vector<Material>& materials,
-                   double length) {
-  const bool viscous = std::any_of(materials.begin(), materials.end(), [&](const Material& m) {
-    return material_viscosity(m, length) > 0.0;
-  });
+void add_viscosity(Model& model, const TetMesh& mesh, const std::vector<Material>& materials,
+                   std::span<const int> tet_region, Index first_node, double length) {
+  std::vector<double> eta;  // (regions)
+  for (const Material& m : materials) eta.push_back(material_viscosity(m, length));
+  const bool viscous = std::any_of(eta.begin(), eta.end(), [](double e) { return e > 0.0; });
   if (!viscous && model.tet_viscosity.empty()) return;
-  model.tet_viscosity.resize(uz(body.tets.end), 0.0);
-  model.tet_metric.resize(uz(body.tets.end), Mat3::Zero());
-  for (auto t = uz(body.tets.begin); t < uz(body.tets.end); ++t) {
-    const Material& material = materials[static_cast<std::size_t>(model.tet_region[t])];
-    model.tet_viscosity[t] = material_viscosity(material, length);
-    const auto g = shape_gradients(model.rest_position, model.tets[t]);
-    Mat3 gradients;
-    gradients << g[1], g[2], g[3];
-    model.tet_metric[t] = gradients.transpose() * gradients;
+  const auto region_of = [&](std::size_t t) {
+    return static_cast<std::size_t>(tet_region.empty() ? 0 : tet_region[t]);
+  };
+  const std::size_t first_tet = model.tets.size() - mesh.tets.size();
+  model.tet_viscosity.resize(first_tet, 0.0);
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    model.tet_viscosity.push_back(eta[region_of(t)]);
+  }
+  if (!viscous) return;
+
+  std::vector<std::array<Vec3, 4>> gradients(mesh.tets.size());
+  parallel_for(mesh.tet_count(),
+               [&](Index t) { gradients[uz(t)] = shape_gradients(mesh.nodes, mesh.tets[uz(t)]); });
+  if (model.viscous_cell.empty()) model.viscous_cell.push_back(0);
+  const auto add_cell = [&](std::span<const Index> nodes, std::span<const Vec3> g, double scale,
+                            double weight) {
+    if (weight == 0.0) return;
+    for (std::size_t a = 0; a < nodes.size(); ++a) {
+      model.viscous_node.push_back(first_node + nodes[a]);
+      model.viscous_gradient.push_back(scale * g[a]);
+    }
+    model.viscous_weight.push_back(weight);
+    model.viscous_cell.push_back(static_cast<Index>(model.viscous_node.size()));
+  };
+  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
+    const std::size_t r = region_of(t);
+    add_cell(mesh.tets[t], gradients[t], 1.0,
+             network_beta(materials[r]) * eta[r] * model.rest_volume[first_tet + t]);
+  }
+  for_each_edge_cell(mesh, gradients, tet_region, [&](const EdgeCell& cell) {
+    const auto r = static_cast<std::size_t>(cell.region);
+    add_cell(cell.nodes, cell.sums, 1.0 / cell.volume,
+             (1.0 - network_beta(materials[r])) * eta[r] * cell.volume);
+  });
+}
+
+void finish_viscosity(Model& model) {
+  if (model.tet_viscosity.empty()) return;
+  model.viscous_start.assign(model.rest_position.size() + 1, 0);
+  for (const Index node : model.viscous_node) ++model.viscous_start[uz(node) + 1];
+  for (std::size_t i = 1; i < model.viscous_start.size(); ++i) {
+    model.viscous_start[i] += model.viscous_start[i - 1];
+  }
+  std::vector<Index> next(model.viscous_start.begin(), model.viscous_start.end() - 1);
+  model.viscous_slot.resize(model.viscous_node.size());
+  for (std::size_t slot = 0; slot < model.viscous_node.size(); ++slot) {
+    const auto node = uz(model.viscous_node[slot]);
+    model.viscous_slot[uz(next[node]++)] = static_cast<Index>(slot);
   }
 }
 
 namespace {
 
-ViscousPull pull_of_tet(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v,
-                        std::size_t t) {
-  const double weight = model.tet_viscosity[t] * model.rest_volume[t];
-  if (weight == 0.0) return {};
-  return viscous_pull(tet_edges(x, model.tets[t]), tet_edges(v, model.tets[t]), model.tet_metric[t],
-                      weight);
+// sum_a (x_a - x_0) g_a^T over the nodes of a cell: since sum_a g_a = 0, the same as with x_a, and
+// more exact far from the origin.
+Mat3 cell_gradient(const Model& model, std::span<const Vec3> x, std::size_t cell) {
+  const auto first = uz(model.viscous_cell[cell]);
+  const Vec3& x0 = x[uz(model.viscous_node[first])];
+  Mat3 sum = Mat3::Zero();
+  for (std::size_t s = first + 1; s < uz(model.viscous_cell[cell + 1]); ++s) {
+    sum += (x[uz(model.viscous_node[s])] - x0) * model.viscous_gradient[s].transpose();
+  }
+  return sum;
+}
+
+ViscousStress stress_of_cell(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v,
+                             std::size_t cell) {
+  return viscous_stress(cell_gradient(model, x, cell), cell_gradient(model, v, cell),
+                        model.viscous_weight[cell]);
 }
 
 }  // namespace
 
 double compute_viscous_forces(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v,
                               Workspace& workspace) {
-  return parallel_sum(model.tet_count(), [&](Index t) {
-    const ViscousPull pull = pull_of_tet(model, x, v, uz(t));
-    workspace.viscous_force[uz(t)] = pull.force;
-    return pull.heat;
+  return parallel_sum(model.viscous_cell_count(), [&](Index i) {
+    const auto cell = uz(i);
+    const ViscousStress viscous = stress_of_cell(model, x, v, cell);
+    for (auto s = uz(model.viscous_cell[cell]); s < uz(model.viscous_cell[cell + 1]); ++s) {
+      workspace.viscous_force[s] = -(viscous.stress * model.viscous_gradient[s]);
+    }
+    return viscous.heat;
   });
 }
 
 double viscous_power(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v) {
-  if (model.tet_viscosity.empty()) return 0.0;
-  return parallel_sum(model.tet_count(),
-                      [&](Index t) { return pull_of_tet(model, x, v, uz(t)).heat; });
+  return parallel_sum(model.viscous_cell_count(),
+                      [&](Index i) { return stress_of_cell(model, x, v, uz(i)).heat; });
 }
 
-// |dE/dt| <= |F| sum_a |G_a| |v_a|, so that the blocks of C are at most 2 eta V |F|^2 |G_a| |G_b|.
-void add_viscous_row_sums(const Model& model, std::span<const Vec3> x, std::span<double> sums) {
-  for (std::size_t t = 0; t < model.tet_viscosity.size(); ++t) {
-    const Mat3& metric = model.tet_metric[t];
-    const Mat3 edges = tet_edges(x, model.tets[t]);
-    const double stretch2 = (edges.transpose() * edges).cwiseProduct(metric).sum();  // |F|^2
-    const std::array<double, 4> g = {std::sqrt(metric.sum()), std::sqrt(metric(0, 0)),
-                                     std::sqrt(metric(1, 1)), std::sqrt(metric(2, 2))};
-    const double weight = 2.0 * model.tet_viscosity[t] * model.rest_volume[t] * stretch2;
-    for (std::size_t a = 0; a < 4; ++a) {
-      sums[uz(model.tets[t][a])] += weight * g[a] * (g[0] + g[1] + g[2] + g[3]);
+// |dE/dt| <= |F| sum_a |g_a| |v_a|, so that the blocks of C are at most 2 eta V |F|^2 |g_a| |g_b|.
+std::vector<double> viscous_row_sums(const Model& model, std::span<const Vec3> x) {
+  std::vector<double> sums(x.size(), 0.0);
+  for (std::size_t cell = 0; cell < model.viscous_weight.size(); ++cell) {
+    const auto begin = uz(model.viscous_cell[cell]);
+    const auto end = uz(model.viscous_cell[cell + 1]);
+    double norms = 0.0;
+    for (auto s = begin; s < end; ++s) norms += model.viscous_gradient[s].norm();
+    const double row =
+        2.0 * model.viscous_weight[cell] * cell_gradient(model, x, cell).squaredNorm() * norms;
+    for (auto s = begin; s < end; ++s) {
+      sums[uz(model.viscous_node[s])] += row * model.viscous_gradient[s].norm();
     }
   }
+  return sums;
 }
 
 }  // namespace sinew

@@ -1,5 +1,10 @@
-// Viscosity of the material: Kelvin-Voigt's dashpot beside the elastic spring, per tet, so that it
-// means the same on every mesh. docs/methods/viscosity.md.
+// Viscosity of the material: Kelvin-Voigt's dashpot beside the elastic spring, which means the same
+// on every mesh. docs/methods/viscosity.md.
+//
+// It acts on the cells in which the network law sees shear: with the share 1 - beta on those around
+// the edges (edge_cells.h), with beta on the tets. So every swing that keeps the volume is damped
+// in proportion to its elastic energy. On tets alone, which lock, a bar of 3 cells would be damped
+// 40 % too strongly in torsion.
 #pragma once
 
 #include <span>
@@ -20,65 +25,52 @@ double material_viscosity(const Material& material, double length);
 // Longest side [m] of the box around the nodes along the axes that `rotation` turns x, y and z to.
 double longest_side(std::span<const Vec3> nodes, const Eigen::Quaterniond& rotation);
 
-// Edges of a tet from its corner 0, as columns: x_1 - x_0, x_2 - x_0, x_3 - x_0 [m]; or the same of
-// velocities.
-inline Mat3 tet_edges(std::span<const Vec3> x, const Tet& t) {
-  Mat3 edges;
-  const Vec3& x0 = x[uz(t[0])];
-  edges << x[uz(t[1])] - x0, x[uz(t[2])] - x0, x[uz(t[3])] - x0;
-  return edges;
-}
-
-// What the viscosity of a tet does to its corners.
-struct ViscousPull {
-  Mat3 force = Mat3::Zero();  // columns: on corners 1, 2 and 3 [N]; corner 0 gets minus their sum
-  double heat = 0.0;          // 2 eta V |dE/dt|^2 [W]
+struct ViscousStress {
+  Mat3 stress = Mat3::Zero();  // V times the first Piola-Kirchhoff stress [J]
+  double heat = 0.0;           // 2 eta V |dE/dt|^2 [W]
 };
 
-// The second Piola-Kirchhoff stress 2 eta dE/dt, E = (F^T F - 1) / 2 Green's strain:
+// The second Piola-Kirchhoff stress is 2 eta dE/dt, with Green's strain E = (F^T F - 1) / 2:
 //
-//   dE/dt = B^T A B,   A = sym(X^T dX/dt),   X the edges, B the inverse of the rest edges,
-//   force = -dD/dv = -2 eta V X (M A M),     D = eta V |dE/dt|^2,   M = B B^T, M_ab = G_a . G_b
+//   dE/dt = sym(F^T dF/dt),   P = 2 eta F dE/dt,   D = eta V |dE/dt|^2,
+//   force on node a = -dD/dv_a = -V P g_a
 //
-// A is half the rate of the edges' dot products: a rigid motion has none, and no tet, flat or
-// inside out, is singular. X M A M X^T is symmetric: no torque. metric: M [1/m2]; weight: eta V
-// [Pa s m3].
-inline ViscousPull viscous_pull(const Mat3& edges, const Mat3& edge_rates, const Mat3& metric,
-                                double weight) {
-  const Mat3 turning = edges.transpose() * edge_rates;
+// F = sum_a x_a g_a^T and dF/dt = sum_a v_a g_a^T with the cell's gradients g_a. A rigid motion has
+// no dE/dt; P F^T is symmetric, so that no torque is left; nothing is singular where the cell is
+// flat or inside out. weight: eta V [Pa s m3].
+inline ViscousStress viscous_stress(const Mat3& F, const Mat3& F_rate, double weight) {
+  const Mat3 turning = F.transpose() * F_rate;
   const Mat3 rate = 0.5 * (turning + turning.transpose());
-  const Mat3 stress = 2.0 * weight * (metric * rate * metric);
-  return {-(edges * stress), rate.cwiseProduct(stress).sum()};
+  return {2.0 * weight * (F * rate), 2.0 * weight * rate.squaredNorm()};
 }
 
-// Appends tet_viscosity and tet_metric of a body's tets, the model's last ones; nothing where no
-// material so far is viscous. length: longest side of the body [m].
-void add_viscosity(Model& model, const Body& body, const std::vector<Material>& materials,
-                   double length);
+// Appends tet_viscosity and the cells of a body, the model's last one; nothing where no material
+// so far is viscous. Nodes of the mesh are the model's from first_node on. tet_region: (tets) or
+// empty; length: longest side of the body [m].
+void add_viscosity(Model& model, const TetMesh& mesh, const std::vector<Material>& materials,
+                   std::span<const int> tet_region, Index first_node, double length);
 
-// Fills workspace.viscous_force with what the viscosity pulls the corners with at positions x and
-// velocities v. Returns the power [W] that it turns into heat. For models with viscosity only.
+// Derives the list node -> cells; called once, by finish().
+void finish_viscosity(Model& model);
+
+// Fills workspace.viscous_force with what the viscosity pulls the nodes of each cell with at
+// positions x and velocities v. Returns the power [W] that it turns into heat.
 double compute_viscous_forces(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v,
                               Workspace& workspace);
 
-// That power alone, v . C v [W]; 0 without viscosity.
+// That power alone, v . C v [W].
 double viscous_power(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v);
 
-// Upper bound of the sum of |C_ij| over a row, for every node [N s/m] (nodes), added to `sums`.
-void add_viscous_row_sums(const Model& model, std::span<const Vec3> x, std::span<double> sums);
+// For every node an upper bound of the sum of |C_ij| over its row [N s/m] (nodes).
+std::vector<double> viscous_row_sums(const Model& model, std::span<const Vec3> x);
 
-// Sum, for a node in the fixed order of its tets, of what workspace.viscous_force holds.
+// Sum, for a node in the fixed order of its cells, of what workspace.viscous_force holds. For
+// models with viscosity only.
 inline Vec3 gather_viscous(const Model& model, const Workspace& workspace, Index node) {
   Vec3 sum = Vec3::Zero();
   const auto n = uz(node);
-  for (Index k = model.tet_start[n]; k < model.tet_start[n + 1]; ++k) {
-    const Index corner = model.node_tet[uz(k)];
-    const Mat3& force = workspace.viscous_force[uz(corner / 4)];
-    if (corner % 4 > 0) {
-      sum += force.col(corner % 4 - 1);
-    } else {
-      sum -= force.rowwise().sum();
-    }
+  for (Index k = model.viscous_start[n]; k < model.viscous_start[n + 1]; ++k) {
+    sum += workspace.viscous_force[uz(model.viscous_slot[uz(k)])];
   }
   return sum;
 }

@@ -126,7 +126,7 @@ void finish_volume_terms(Model& model) {
   for (std::size_t t = 0; t < model.tets.size(); ++t) {
     model.has_volume = model.has_volume || model.tet_shear[t] > 0.0 || model.tet_bulk[t] > 0.0;
   }
-  if (!model.has_volume && model.tet_viscosity.empty()) return;
+  if (!model.has_volume) return;
 
   const auto list = [](std::size_t count, const auto& lists, std::vector<Index>& start,
                        std::vector<Index>& items, const auto& item_of) {

@@ -17,7 +17,7 @@ struct Workspace {
   std::vector<double> partial;        // sums of blocks, whatever they are of
   std::vector<Vec3> obstacle_center;  // where compute_forces last saw them [m] (obstacles)
 
-  std::vector<Mat3> viscous_force;  // on corners 1 to 3 [N], columns (tets); empty: no viscosity
+  std::vector<Vec3> viscous_force;  // on a node of a viscous cell [N] (slots)
 
   std::vector<char> tangled;  // of find_tangled: 1 where a body is (bodies)
 

@@ -83,9 +83,7 @@ void check_finite(const Model& model, const SceneBody& body) {
     const auto s = static_cast<std::size_t>(i);
     good = good && std::isfinite(model.stiffness[s]) && std::isfinite(model.damping[s]);
   }
-  for (auto t = uz(b.tets.begin); t < uz(b.tets.end) && !model.tet_viscosity.empty(); ++t) {
-    good = good && std::isfinite(model.tet_viscosity[t] * model.tet_metric[t].sum());
-  }
+  for (const double weight : model.viscous_weight) good = good && std::isfinite(weight);
   if (!good)
     throw Error(ErrorKind::input,
                 fmt::format("the masses or springs of [body.{}] are too large or too small to "

@@ -160,8 +160,7 @@ std::vector<double> row_sums(const Model& model, const Field& x, const Workspace
 double guaranteed_step(const Model& model, const Field& x, const Workspace& workspace,
                        Index& stiffest) {
   const std::vector<double> rows = row_sums(model, x, workspace);
-  std::vector<double> viscous_rows(x.size(), 0.0);
-  add_viscous_row_sums(model, x, viscous_rows);
+  const std::vector<double> viscous_rows = viscous_row_sums(model, x);
   double h = std::numeric_limits<double>::infinity();
   double highest = 0.0;
   for (Index i = 0; i < model.node_count(); ++i) {
