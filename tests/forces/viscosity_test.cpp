@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <numbers>
 
@@ -137,6 +138,25 @@ TEST(Viscosity, ARigidMotionOfATurnedAndStrainedBodyFeelsNothing) {
     for (const Vec3& f : pulls(m, x, v)) EXPECT_LE(f.norm(), 1e-13);
     EXPECT_LE(viscous_power(m, x, v), 1e-13);
   }
+}
+
+TEST(Viscosity, OnlyRigidMotionsFeelNothing) {
+  const Model m = viscous_box();
+  const auto n = static_cast<Eigen::Index>(m.rest_position.size());
+  Eigen::MatrixXd C(3 * n, 3 * n);
+  Field u(m.rest_position.size(), Vec3::Zero());
+  for (Eigen::Index c = 0; c < 3 * n; ++c) {
+    u[static_cast<std::size_t>(c / 3)][c % 3] = 1.0;
+    const Field f = pulls(m, m.rest_position, u);
+    u[static_cast<std::size_t>(c / 3)][c % 3] = 0.0;
+    for (Eigen::Index i = 0; i < n; ++i) {
+      C.block<3, 1>(3 * i, c) = -f[static_cast<std::size_t>(i)];
+    }
+  }
+  EXPECT_LE((C - C.transpose()).norm(), 1e-14 * C.norm());
+  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(C).eigenvalues();
+  EXPECT_LE(values(5), 1e-13 * values(3 * n - 1));
+  EXPECT_GE(values(6), 0.01 * values(3 * n - 1));
 }
 
 TEST(Viscosity, KeepsMomentumAndAngularMomentum) {

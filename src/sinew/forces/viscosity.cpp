@@ -52,7 +52,6 @@ void add_viscosity(Model& model, const TetMesh& mesh, const std::vector<Material
   if (model.viscous_cell.empty()) model.viscous_cell.push_back(0);
   const auto add_cell = [&](std::span<const Index> nodes, std::span<const Vec3> g, double scale,
                             double weight) {
-    if (weight == 0.0) return;
     for (std::size_t a = 0; a < nodes.size(); ++a) {
       model.viscous_node.push_back(first_node + nodes[a]);
       model.viscous_gradient.push_back(scale * g[a]);
@@ -62,13 +61,13 @@ void add_viscosity(Model& model, const TetMesh& mesh, const std::vector<Material
   };
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     const std::size_t r = region_of(t);
-    add_cell(mesh.tets[t], gradients[t], 1.0,
-             network_beta(materials[r]) * eta[r] * model.rest_volume[first_tet + t]);
+    if (eta[r] == 0.0 || network_beta(materials[r]) < 1.0) continue;
+    add_cell(mesh.tets[t], gradients[t], 1.0, eta[r] * model.rest_volume[first_tet + t]);
   }
   for_each_edge_cell(mesh, gradients, tet_region, [&](const EdgeCell& cell) {
     const auto r = static_cast<std::size_t>(cell.region);
-    add_cell(cell.nodes, cell.sums, 1.0 / cell.volume,
-             (1.0 - network_beta(materials[r])) * eta[r] * cell.volume);
+    if (eta[r] == 0.0 || network_beta(materials[r]) == 1.0) return;
+    add_cell(cell.nodes, cell.sums, 1.0 / cell.volume, eta[r] * cell.volume);
   });
 }
 
@@ -89,22 +88,37 @@ void finish_viscosity(Model& model) {
 
 namespace {
 
-// sum_a (x_a - x_0) g_a^T over the nodes of a cell: since sum_a g_a = 0, the same as with x_a, and
-// more exact far from the origin.
-Mat3 cell_gradient(const Model& model, std::span<const Vec3> x, std::size_t cell) {
-  const auto first = uz(model.viscous_cell[cell]);
-  const Vec3& x0 = x[uz(model.viscous_node[first])];
-  Mat3 sum = Mat3::Zero();
-  for (std::size_t s = first + 1; s < uz(model.viscous_cell[cell + 1]); ++s) {
-    sum += (x[uz(model.viscous_node[s])] - x0) * model.viscous_gradient[s].transpose();
+// F and dF/dt of a cell, sum_a (x_a - x_0) g_a^T and the same of v: since sum_a g_a = 0, the same
+// as with x_a, and more exact far from the origin.
+struct CellGradient {
+  Mat3 F = Mat3::Zero();
+  Mat3 F_rate = Mat3::Zero();
+};
+inline CellGradient cell_gradient(const Model& model, std::span<const Vec3> x,
+                                  std::span<const Vec3> v, std::size_t cell) {
+  auto s = uz(model.viscous_cell[cell]);
+  const auto end = uz(model.viscous_cell[cell + 1]);
+  const auto first = uz(model.viscous_node[s]);
+  const Vec3 x0 = x[first];
+  const Vec3 v0 = v[first];
+  CellGradient sum;
+  for (++s; s < end; ++s) {
+    const auto node = uz(model.viscous_node[s]);
+    const Vec3 g = model.viscous_gradient[s];
+    const Vec3 way = x[node] - x0;
+    const Vec3 speed = v[node] - v0;
+    for (int c = 0; c < 3; ++c) {
+      sum.F.col(c) += g[c] * way;
+      sum.F_rate.col(c) += g[c] * speed;
+    }
   }
   return sum;
 }
 
-ViscousStress stress_of_cell(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v,
-                             std::size_t cell) {
-  return viscous_stress(cell_gradient(model, x, cell), cell_gradient(model, v, cell),
-                        model.viscous_weight[cell]);
+inline ViscousStress stress_of_cell(const Model& model, std::span<const Vec3> x,
+                                    std::span<const Vec3> v, std::size_t cell) {
+  const CellGradient g = cell_gradient(model, x, v, cell);
+  return viscous_stress(g.F, g.F_rate, model.viscous_weight[cell]);
 }
 
 }  // namespace
@@ -135,7 +149,7 @@ std::vector<double> viscous_row_sums(const Model& model, std::span<const Vec3> x
     double norms = 0.0;
     for (auto s = begin; s < end; ++s) norms += model.viscous_gradient[s].norm();
     const double row =
-        2.0 * model.viscous_weight[cell] * cell_gradient(model, x, cell).squaredNorm() * norms;
+        2.0 * model.viscous_weight[cell] * cell_gradient(model, x, x, cell).F.squaredNorm() * norms;
     for (auto s = begin; s < end; ++s) {
       sums[uz(model.viscous_node[s])] += row * model.viscous_gradient[s].norm();
     }

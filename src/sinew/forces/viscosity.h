@@ -1,10 +1,10 @@
 // Viscosity of the material: Kelvin-Voigt's dashpot beside the elastic spring, which means the same
 // on every mesh. docs/methods/viscosity.md.
 //
-// It acts on the cells in which the network law sees shear: with the share 1 - beta on those around
-// the edges (edge_cells.h), with beta on the tets. So every swing that keeps the volume is damped
-// in proportion to its elastic energy. On tets alone, which lock, a bar of 3 cells would be damped
-// 40 % too strongly in torsion.
+// It acts on the cells in which the network law sees shear, the tets around each edge
+// (edge_cells.h), or each tet by itself where beta is 1. So every swing that keeps the volume is
+// damped in proportion to its elastic energy. On tets alone, which lock, a bar of 3 cells would be
+// damped 40 % too strongly in torsion.
 #pragma once
 
 #include <span>
