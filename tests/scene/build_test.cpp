@@ -476,5 +476,17 @@ TEST(Build, FillsInWhatActs) {
   EXPECT_EQ(m.inverse_mass[static_cast<std::size_t>(m.pins[0].nodes[0])], 0.0);
 }
 
+TEST(Build, ViscosityOfARatioIsTheSameRefinedAndRotated) {
+  const std::string text =
+      "[body.b]\nshape = \"beam\"\ncells = [1, 1, 4]\ndamping = \"material\"\n"
+      "damping_ratio = 0.2\n";
+  const double mu = shear_modulus(15e3, 0.45);
+  const double eta = 2.0 * 0.2 * 0.4 * std::sqrt(1060.0 * mu) / std::numbers::pi;
+  EXPECT_NEAR(build(text).tet_viscosity[0], eta, 1e-9);
+  EXPECT_NEAR(build(text, {"b.refine=1"}).tet_viscosity[0], eta, 1e-9);
+  EXPECT_NEAR(build(text, {"b.rotation=[20, 30, 40]"}).tet_viscosity[0], eta, 1e-9);
+  EXPECT_NEAR(build(text, {"b.scale=2.0"}).tet_viscosity[0], 2.0 * eta, 1e-9);
+}
+
 }  // namespace
 }  // namespace sinew

@@ -136,6 +136,15 @@ checkpoint = 0
   EXPECT_EQ(parse(s.document).document, s.document);
 }
 
+TEST(Parse, DampingByTheMaterial) {
+  const Material m = parse("[body.b]\nshape = \"beam\"\ndamping = \"material\"\nviscosity = 50.0\n")
+                         .bodies[0]
+                         .material;
+  EXPECT_EQ(m.damping, Damping::material);
+  EXPECT_EQ(m.damping_ratio, 0.1);
+  EXPECT_EQ(m.viscosity, 50.0);
+}
+
 TEST(Parse, SelectsByPlace) {
   const Scene s = parse(R"(
 [body.b]

@@ -84,6 +84,19 @@ TEST(StableStep, IsSharpOnTissueWithAndWithoutDamping) {
   }
 }
 
+TEST(StableStep, IsSharpOnViscousTissue) {
+  for (const double zeta : {0.05, 0.2, 1.0}) {
+    Model m = tissue_box({.damping = Damping::material, .damping_ratio = zeta}, {3, 3, 3});
+    m.gravity = Vec3::Zero();
+    m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
+    finish(m);
+    Workspace w(m);
+    const double h = find_stable_step(m, m.rest_position, w).step;
+    EXPECT_TRUE(stays_bounded(m, 0.97 * h)) << zeta;
+    EXPECT_FALSE(stays_bounded(m, 1.05 * h)) << zeta;
+  }
+}
+
 TEST(StableStep, WatchingFromTheKnownModeFindsTheSameStep) {
   for (const double zeta : {0.0, 0.2}) {
     Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = zeta}, {4, 4, 4});

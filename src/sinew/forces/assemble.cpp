@@ -9,6 +9,7 @@
 #include "sinew/base/error.h"
 #include "sinew/forces/laws.h"
 #include "sinew/forces/network.h"
+#include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/coloring.h"
 #include "sinew/mesh/edges.h"
@@ -45,6 +46,7 @@ double damped_stiffness(const Material& material, double volume, double length, 
 double law_damping(const Material& material, double stiffness, double mass_i, double mass_j,
                    double length) {
   if (material.law == Law::uniform) return material.spring_damping;
+  if (material.damping == Damping::material) return 0.0;
   return material.damping == Damping::published
              ? published_damping(stiffness, mass_i, mass_j, length)
              : ratio_damping(material.damping_ratio, stiffness, mass_i, mass_j);
@@ -171,6 +173,8 @@ void add_body(Model& model, const BodySpec& spec) {
   body.springs.end = model.spring_count();
   add_network(model, spec.mesh, spec.materials, spec.tet_region, body.nodes.begin);
   add_volume_terms(model, body, spec.materials);
+  add_viscosity(model, spec.mesh, spec.materials, spec.tet_region, body.nodes.begin,
+                longest_side(spec.mesh.nodes, spec.rotation));
   model.first_attachment = model.spring_count();
 
   double mass = 0.0;
@@ -300,6 +304,7 @@ void finish(Model& model) {
     model.network_start.resize(model.rest_position.size() + 1, model.network_start.back());
   }
   finish_volume_terms(model);
+  finish_viscosity(model);
   find_active_springs(model);
   list_springs_of_nodes(model);
   colour_limited_springs(model);

@@ -23,6 +23,8 @@ struct BodySpec {
   std::vector<int> tet_region;       // index into materials (tets); empty: all 0
   Vec3 velocity = Vec3::Zero();      // [m/s] of every node at the start
   Vec3 spin = Vec3::Zero();          // [rad/s] angular velocity about the centre of mass
+  // What turned the mesh's own axes to where it is placed: its longest side lies along one of them.
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
 };
 
 // Appends the body's nodes, tets and springs. Masses from density: m_i = sum_t rho V_t / 4.

@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "sinew/base/parallel.h"
-#include "sinew/mesh/edges.h"
+#include "sinew/forces/edge_cells.h"
 
 namespace sinew {
 namespace {
@@ -41,47 +41,6 @@ void merge(std::vector<Entry>& entries) {
   entries.resize(kept);
 }
 
-// The edge cells: the tets of one region around one edge, with their mean gradients.
-class EdgeCells {
- public:
-  EdgeCells(const TetMesh& mesh, const std::vector<std::array<Vec3, 4>>& gradients)
-      : mesh_(mesh), gradients_(gradients) {}
-
-  void start() {
-    nodes_.clear();
-    sums_.clear();
-    volume_ = 0.0;
-  }
-
-  void add(Index tet) {
-    const auto t = uz(tet);
-    const double share = signed_volume(mesh_.nodes, mesh_.tets[t]) / 6.0;
-    volume_ += share;
-    for (std::size_t a = 0; a < 4; ++a) {
-      const Index node = mesh_.tets[t][a];
-      const auto found = std::find(nodes_.begin(), nodes_.end(), node);
-      if (found == nodes_.end()) {
-        nodes_.push_back(node);
-        sums_.push_back(share * gradients_[t][a]);
-      } else {
-        sums_[static_cast<std::size_t>(found - nodes_.begin())] += share * gradients_[t][a];
-      }
-    }
-  }
-
-  // L_edge of the cell: V_e mu g_a . g_b with g = sums / V_e.
-  void finish(double shear, std::vector<Entry>& entries) const {
-    if (volume_ > 0.0) add_cell(nodes_, sums_, shear / volume_, mesh_.node_count(), entries);
-  }
-
- private:
-  const TetMesh& mesh_;
-  const std::vector<std::array<Vec3, 4>>& gradients_;
-  std::vector<Index> nodes_;
-  std::vector<Vec3> sums_;  // sum of (V_t / 6) G_ta
-  double volume_ = 0.0;
-};
-
 }  // namespace
 
 std::array<Vec3, 4> shape_gradients(const std::vector<Vec3>& nodes, const Tet& tet) {
@@ -113,28 +72,13 @@ void add_network(Model& model, const TetMesh& mesh, const std::vector<Material>&
         beta * shear_modulus(m.young, m.poisson) * signed_volume(mesh.nodes, mesh.tets[uz(t)]);
     add_cell(mesh.tets[uz(t)], gradients[uz(t)], weight, mesh.node_count(), entries);
   }
-  const EdgeTable table = build_edges(mesh.tets, mesh.node_count());
-  EdgeCells cell(mesh, gradients);
-  std::vector<int> regions;
-  for (Index e = 0; e < table.edge_count(); ++e) {
-    const std::span<const Index> around = table.tets_of(e);
-    regions.clear();
-    for (const Index t : around) {
-      if (std::find(regions.begin(), regions.end(), region_of(t)) == regions.end()) {
-        regions.push_back(region_of(t));
-      }
-    }
-    for (const int r : regions) {
-      const Material& m = materials[static_cast<std::size_t>(r)];
-      const double beta = network_beta(m);
-      if (!in_network(m) || beta == 1.0) continue;
-      cell.start();
-      for (const Index t : around) {
-        if (region_of(t) == r) cell.add(t);
-      }
-      cell.finish((1.0 - beta) * shear_modulus(m.young, m.poisson), entries);
-    }
-  }
+  for_each_edge_cell(mesh, gradients, tet_region, [&](const EdgeCell& cell) {
+    const Material& m = materials[static_cast<std::size_t>(cell.region)];
+    const double beta = network_beta(m);
+    if (!in_network(m) || beta == 1.0) return;
+    const double shear = (1.0 - beta) * shear_modulus(m.young, m.poisson);
+    add_cell(cell.nodes, cell.sums, shear / cell.volume, mesh.node_count(), entries);
+  });
   merge(entries);
 
   // Rows from the upper triangle: the lower neighbours of a node come first, in increasing order,

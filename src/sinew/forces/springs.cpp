@@ -9,7 +9,8 @@ namespace sinew {
 Workspace::Workspace(const Model& model)
     : spring_force(model.springs.size(), Vec3::Zero()),
       force(model.rest_position.size(), Vec3::Zero()),
-      obstacle_center(obstacle_centers(model, 0.0)) {
+      obstacle_center(obstacle_centers(model, 0.0)),
+      viscous_force(model.viscous_node.size(), Vec3::Zero()) {
   if (!model.has_volume) return;
   tet_volume.resize(model.tets.size());
   tet_gradient.resize(model.tets.size());

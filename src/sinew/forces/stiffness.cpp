@@ -5,6 +5,7 @@
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/springs.h"
+#include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 
 namespace sinew {
@@ -32,8 +33,10 @@ void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double
   }
   const bool volume = model.has_volume && a != 0.0;
   const bool network = !model.network_start.empty() && a != 0.0;
+  const bool viscous = !model.tet_viscosity.empty() && b != 0.0;
   const bool pressed = only_stiffening && !model.obstacles.empty();
   if (volume) compute_volume_force_change(model, x, a, u, workspace);
+  if (viscous) compute_viscous_forces(model, x, u, workspace);
   parallel_for(model.node_count(), [&](Index i) {
     const auto n = uz(i);
     out[n] = Vec3::Zero();
@@ -41,6 +44,7 @@ void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double
     out[n] = b * model.drag[n] * model.mass[n] * u[n] - gather_springs(model, workspace, i);
     if (network) out[n] -= a * network_pull(model, u, i);
     if (volume) out[n] -= gather_tets(model, workspace, i);
+    if (viscous) out[n] -= b * gather_viscous(model, workspace, i);
     if (pressed) out[n] += a * largest_obstacle_stiffness(model, i) * u[n];
   });
   if (!only_stiffening)

@@ -18,7 +18,8 @@ enum class Tangent { full, only_stiffening };
 void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& workspace);
 
 // out = (a K + b C) u at positions x: K the second derivative of the energies of springs,
-// network, volume and obstacles (where compute_forces last saw them), C the dashpots and the drag.
+// network, volume and obstacles (where compute_forces last saw them), C the dashpots, the
+// viscosity and the drag.
 // Nodes whose motion is given get 0; their u counts.
 void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double a, double b,
                              std::span<const Vec3> u, Tangent tangent, Workspace& workspace,

@@ -5,6 +5,7 @@
 #include "sinew/forces/network.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/springs.h"
+#include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
 
@@ -27,6 +28,10 @@ double outer_potential(const Model& model, const State& state) {
 double compute_forces(const Model& model, const State& state, Workspace& workspace) {
   double power = compute_spring_forces(model, state, workspace);
   if (model.has_volume) compute_volume_pressures(model, state.position, workspace);
+  const bool viscous = !model.tet_viscosity.empty();
+  if (viscous) {
+    power += compute_viscous_forces(model, state.position, state.half_velocity, workspace);
+  }
   const bool network = !model.network_start.empty();
   const Index n = model.node_count();
   workspace.partial.assign(static_cast<std::size_t>(block_count(n)), 0.0);
@@ -37,6 +42,7 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
       Vec3 f = gather_springs(model, workspace, i);
       if (network) f += network_pull(model, state.position, i);
       if (model.has_volume) f += push_of_tets(model, workspace, i);
+      if (viscous) f += gather_viscous(model, workspace, i);
       if (model.inverse_mass[k] > 0.0) {
         const Vec3& w = state.half_velocity[k];
         f += model.mass[k] * (model.gravity - model.drag[k] * w);

@@ -11,8 +11,8 @@
 namespace sinew {
 
 // Fills workspace.force with the total force on every node [N]: springs, dashpots, network, volume,
-// gravity, drag, loads and obstacles at state.time. Pinned nodes and anchors get only what the
-// material pulls. Returns the power [W] that dashpots and drag turn into heat.
+// viscosity, gravity, drag, loads and obstacles at state.time. Pinned nodes and anchors get only
+// what the material pulls. Returns the power [W] that dashpots, viscosity and drag turn into heat.
 double compute_forces(const Model& model, const State& state, Workspace& workspace);
 
 // The talk's velocity, v(t) = (x(t+h) - x(t-h)) / 2h = w + a h / 2, with w the half-step velocity

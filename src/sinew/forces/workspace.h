@@ -17,6 +17,8 @@ struct Workspace {
   std::vector<double> partial;        // sums of blocks, whatever they are of
   std::vector<Vec3> obstacle_center;  // where compute_forces last saw them [m] (obstacles)
 
+  std::vector<Vec3> viscous_force;  // on a node of a viscous cell [N] (slots)
+
   std::vector<char> tangled;  // of find_tangled: 1 where a body is (bodies)
 
   // Volume terms; empty where the model has none.

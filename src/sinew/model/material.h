@@ -29,10 +29,11 @@ enum class LloydLength {
   edge,  // the edge's own rest length
 };
 
-// How the laws with a Young's modulus get their dashpots.
+// How the laws with a Young's modulus damp.
 enum class Damping {
   ratio,      // c = 2 zeta sqrt(k m_red), zeta = damping_ratio
   published,  // d = 2 sqrt(k (m_i + m_j)) / l0, the number of the paper, whatever its unit
+  material,   // none: the material's viscosity instead (forces/viscosity.h)
 };
 
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
@@ -46,7 +47,8 @@ struct Material {
   double spring_damping = 3e3;    // [N s/m] >= 0; uniform
   LloydLength length = LloydLength::tet;
   Damping damping = Damping::ratio;
-  double damping_ratio = 0.1;        // [-] >= 0; damping = ratio
+  double damping_ratio = 0.1;        // [-] >= 0; damping = ratio, material
+  double viscosity = 0.0;            // [Pa s] >= 0 in shear, beside what damping gives; all laws
   double drag = 0.0;                 // [1/s] >= 0; force -drag m v on every node
   double stretch_limit = no_limit;   // tau_s [-] > 0: |x_ij| <= (1 + tau_s) l0
   double compress_limit = no_limit;  // tau_c [-] in (0, 1]: |x_ij| >= (1 - tau_c) l0

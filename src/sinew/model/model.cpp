@@ -36,6 +36,7 @@ std::uint64_t Model::hash() const {
   h.array(start_position);
   h.array(tets);
   h.array(tet_region);
+  h.array(tet_viscosity);
   h.array(springs);
   h.array(stiffness);
   h.array(rest_length);
@@ -50,6 +51,10 @@ std::uint64_t Model::hash() const {
   h.array(cell_share);
   h.array(cell_bulk);
   h.array(volume_limit);
+  h.array(viscous_cell);
+  h.array(viscous_node);
+  h.array(viscous_gradient);
+  h.array(viscous_weight);
   h.array(limited);
   h.array(colour_start);
   h.value(limit_sweeps);

@@ -79,9 +79,10 @@ struct Model {
   std::vector<Vec3> start_position;  // [m] (nodes of bodies); empty: rest_position
 
   // --- tets ---
-  std::vector<Tet> tets;            // node ids (tets)
-  std::vector<double> rest_volume;  // V [m3] (tets)
-  std::vector<int> tet_region;      // index into the body's regions (tets)
+  std::vector<Tet> tets;              // node ids (tets)
+  std::vector<double> rest_volume;    // V [m3] (tets)
+  std::vector<int> tet_region;        // index into the body's regions (tets)
+  std::vector<double> tet_viscosity;  // eta in shear [Pa s] (tets); empty: none is viscous
 
   // --- springs: those of the bodies, body by body, then attachments ---
   std::vector<Edge> springs;           // node ids (springs)
@@ -121,6 +122,15 @@ struct Model {
   std::vector<Index> node_tet;       // 4 t + corner: the node is that corner of tet t
   bool has_volume = false;           // false: nothing above acts
 
+  // --- viscosity: cells with gradients g_a, F = sum_a x_a g_a^T (forces/viscosity.h); empty where
+  // no tet is viscous. A slot is a node of a cell. ---
+  std::vector<Index> viscous_cell;     // offsets of the cells' slots (cells + 1)
+  std::vector<Index> viscous_node;     // node ids (slots)
+  std::vector<Vec3> viscous_gradient;  // g_a [1/m] (slots)
+  std::vector<double> viscous_weight;  // eta V of the cell [Pa s m3] (cells)
+  std::vector<Index> viscous_start;    // offsets into viscous_slot (nodes + 1)
+  std::vector<Index> viscous_slot;     // slots of the node, increasing
+
   // --- limited springs grouped so that no two of a colour share a node ---
   std::vector<Index> limited;       // spring ids, colour by colour
   std::vector<Index> colour_start;  // offsets into limited (colours + 1)
@@ -139,6 +149,7 @@ struct Model {
 
   Index node_count() const { return static_cast<Index>(rest_position.size()); }
   Index tet_count() const { return static_cast<Index>(tets.size()); }
+  Index viscous_cell_count() const { return static_cast<Index>(viscous_weight.size()); }
   Index cell_count() const { return static_cast<Index>(cell_volume.size()); }
   Index spring_count() const { return static_cast<Index>(springs.size()); }
   // Nodes that belong to bodies; the anchors of attachments come after them.

@@ -83,6 +83,7 @@ void check_finite(const Model& model, const SceneBody& body) {
     const auto s = static_cast<std::size_t>(i);
     good = good && std::isfinite(model.stiffness[s]) && std::isfinite(model.damping[s]);
   }
+  for (const double weight : model.viscous_weight) good = good && std::isfinite(weight);
   if (!good)
     throw Error(ErrorKind::input,
                 fmt::format("the masses or springs of [body.{}] are too large or too small to "
@@ -115,6 +116,7 @@ std::vector<PlacedBody> add_bodies(const Scene& scene, Model& model, BuildReport
     spec.mesh = placed.mesh;
     spec.velocity = body.velocity;
     spec.spin = body.spin;
+    spec.rotation = body.rotation;
     assign_regions(placed, spec);
     try {
       calibrate_materials(spec);

@@ -161,8 +161,11 @@ Material parse_material(const Reader& reader, const Material& base) {
   if (const auto length = reader.word("length"))
     m.length = *length == "tet" ? LloydLength::tet : LloydLength::edge;
   if (const auto damping = reader.word("damping"))
-    m.damping = *damping == "ratio" ? Damping::ratio : Damping::published;
+    m.damping = *damping == "ratio"       ? Damping::ratio
+                : *damping == "published" ? Damping::published
+                                          : Damping::material;
   reader.number("damping_ratio", m.damping_ratio);
+  reader.number("viscosity", m.viscosity);
   reader.number("drag", m.drag);
   reader.number("stretch_limit", m.stretch_limit);
   reader.number("compress_limit", m.compress_limit);

@@ -8,6 +8,7 @@
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
+#include "sinew/forces/viscosity.h"
 #include "sinew/solver/linear_solver.h"
 
 namespace sinew {
@@ -41,7 +42,7 @@ double damping_power(const Model& model, const Field& x, const Field& v) {
       return v_ij.dot(dashpot_times(x[b] - x[a], model.damping[s], v_ij));
     });
   }
-  return sum;
+  return sum + viscous_power(model, x, v);
 }
 
 namespace {
@@ -59,7 +60,7 @@ Field way(const Objective& objective, const State& state) {
   return u;
 }
 
-// out = C u, dashpots in their directions at objective.lag, and drag.
+// out = C u, dashpots and viscosity as at objective.lag, and drag.
 void damping_times(const Objective& objective, const Field& u, Workspace& workspace, Field& out) {
   out.resize(u.size());
   stiffness_damping_times(objective.model, *objective.lag, 0.0, 1.0, u, Tangent::full, workspace,

@@ -20,8 +20,8 @@ using Field = std::vector<Vec3>;  // one vector per node
 // state.time, plus
 //   share sum_i f_i . (x_i - X_i)            a dead force that is taken away in load steps
 //   inertia/2 sum_i m_i |x_i - y_i|^2        of an implicit step, inertia = 1/h^2
-//   rate/2 (x - from) . C (x - from)         dashpots and drag over that step, rate = 1/h,
-//                                            with the directions of the dashpots at `lag`
+//   rate/2 (x - from) . C (x - from)         dashpots, viscosity and drag over that step,
+//                                            rate = 1/h, with dashpots and viscosity as at `lag`
 struct Objective {
   const Model& model;
   const Field* dead_force = nullptr;  // [N]
@@ -40,7 +40,7 @@ double objective_value(const Objective& objective, const State& state, Workspace
 // model alone pulls all nodes with.
 Field objective_force(const Objective& objective, const State& state, Workspace& workspace);
 
-// v . C v of dashpots, in their directions at x, and drag [W], v of all nodes.
+// v . C v of dashpots and viscosity as at positions x, and drag [W], v of all nodes.
 double damping_power(const Model& model, const Field& x, const Field& v);
 
 struct NewtonProgress {

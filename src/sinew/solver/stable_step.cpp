@@ -10,6 +10,7 @@
 #include "sinew/base/parallel.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/stiffness.h"
+#include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume_law.h"
 
 namespace sinew {
@@ -159,12 +160,13 @@ std::vector<double> row_sums(const Model& model, const Field& x, const Workspace
 double guaranteed_step(const Model& model, const Field& x, const Workspace& workspace,
                        Index& stiffest) {
   const std::vector<double> rows = row_sums(model, x, workspace);
+  const std::vector<double> viscous_rows = viscous_row_sums(model, x);
   double h = std::numeric_limits<double>::infinity();
   double highest = 0.0;
   for (Index i = 0; i < model.node_count(); ++i) {
     const auto n = uz(i);
     double k = rows[n] + largest_obstacle_stiffness(model, i);
-    double c = model.drag[n] * model.mass[n];
+    double c = model.drag[n] * model.mass[n] + viscous_rows[n];
     for (Index e = model.spring_start[n]; e < model.spring_start[n + 1]; ++e) {
       const Index spring = model.node_spring[uz(e)] >> 1;
       const auto s = uz(spring);

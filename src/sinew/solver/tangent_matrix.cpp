@@ -5,6 +5,7 @@
 
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
+#include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
 
@@ -47,6 +48,17 @@ bool acts(const Model& model, std::size_t s) {
          model.compress_limit[s] < no_limit;
 }
 
+// Calls f(cell, slot, slot) for every pair of nodes of every viscous cell.
+template <typename F>
+void for_each_viscous_pair(const Model& model, const F& f) {
+  for (Index cell = 0; cell < model.viscous_cell_count(); ++cell) {
+    const Index end = model.viscous_cell[uz(cell) + 1];
+    for (Index a = model.viscous_cell[uz(cell)]; a < end; ++a) {
+      for (Index b = a + 1; b < end; ++b) f(cell, a, b);
+    }
+  }
+}
+
 Edge sorted(Index a, Index b) {
   return a < b ? Edge{a, b} : Edge{b, a};
 }
@@ -81,6 +93,9 @@ void TangentMatrix::find_edges() {
   for (std::size_t s = 0; s < model_.springs.size(); ++s) {
     if (acts(model_, s)) edges_.push_back(sorted(model_.springs[s][0], model_.springs[s][1]));
   }
+  for_each_viscous_pair(model_, [&](Index, Index a, Index b) {
+    edges_.push_back(sorted(model_.viscous_node[uz(a)], model_.viscous_node[uz(b)]));
+  });
   std::sort(edges_.begin(), edges_.end());
   edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
   const auto edge_of = [&](Index a, Index b) {
@@ -110,6 +125,22 @@ void TangentMatrix::find_edges() {
   sort_by_key(
       edges_.size(), static_cast<Index>(of_spring.size()),
       [&](Index i) { return of_spring[uz(i)]; }, edge_spring_start_, edge_springs_);
+
+  if (!model_.viscous_cell.empty()) {
+    std::vector<ViscousPair> viscous;
+    std::vector<Index> of_viscous, order;
+    for_each_viscous_pair(model_, [&](Index cell, Index a, Index b) {
+      const Index m = model_.viscous_node[uz(a)];
+      const Index n = model_.viscous_node[uz(b)];
+      of_viscous.push_back(edge_of(m, n));
+      viscous.push_back(m < n ? ViscousPair{cell, a, b} : ViscousPair{cell, b, a});
+    });
+    sort_by_key(
+        edges_.size(), static_cast<Index>(viscous.size()),
+        [&](Index i) { return of_viscous[uz(i)]; }, edge_viscous_start_, order);
+    for (const Index i : order) edge_viscous_.push_back(viscous[uz(i)]);
+    viscous_deformation_.resize(uz(model_.viscous_cell_count()));
+  }
 
   // Each edge is an entry in the rows of both its ends.
   const auto ends = static_cast<Index>(2 * edges_.size());
@@ -216,6 +247,10 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
   parallel_for(static_cast<Index>(tet_stiffness_.size()), [&](Index t) {
     tet_stiffness_[uz(t)] = tet_volume_stiffness(model, workspace, uz(t));
   });
+  const bool viscous = !edge_viscous_.empty() && objective.rate > 0.0;
+  parallel_for(viscous ? model.viscous_cell_count() : 0, [&](Index cell) {
+    viscous_deformation_[uz(cell)] = viscous_deformation(model, *objective.lag, cell);
+  });
   parallel_for(static_cast<Index>(edges_.size()), [&](Index i) {
     const auto e = uz(i);
     const auto [a, b] = edges_[e];
@@ -241,6 +276,14 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
           spring_stiffness_block(x[uz(b)] - x[uz(a)], model.stiffness[s], model.rest_length[s]);
       const double c = objective.rate * model.damping[s];
       if (c > 0.0) block += dashpot_block((*objective.lag)[uz(b)] - (*objective.lag)[uz(a)], c);
+    }
+    for (auto k = uz(viscous ? edge_viscous_start_[e] : 0);
+         viscous && k < uz(edge_viscous_start_[e + 1]); ++k) {
+      const ViscousPair& pair = edge_viscous_[k];
+      block -= objective.rate * viscous_block(viscous_deformation_[uz(pair.cell)],
+                                              model.viscous_gradient[uz(pair.a)],
+                                              model.viscous_gradient[uz(pair.b)],
+                                              model.viscous_weight[uz(pair.cell)]);
     }
     set_near_block(edge_entries_[e][0], block);
     set_near_block(edge_entries_[e][1], block.transpose());

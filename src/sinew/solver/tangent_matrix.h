@@ -51,6 +51,10 @@ class TangentMatrix {
   struct AroundEdge {
     Index tet, c, d;
   };
+  // A viscous cell with both ends of the edge, and their slots.
+  struct ViscousPair {
+    Index cell, a, b;
+  };
   // What a corner of a tet adds to the gradient of a cell's volume.
   struct Part {
     Index corner;  // 4 t + corner
@@ -75,6 +79,9 @@ class TangentMatrix {
   std::vector<Index> edge_tet_start_;               // (edges + 1)
   std::vector<AroundEdge> edge_tets_;
   std::vector<double> tet_stiffness_;                    // of tet_volume_stiffness [Pa] (tets)
+  std::vector<Index> edge_viscous_start_;  // (edges + 1), empty where nothing is viscous
+  std::vector<ViscousPair> edge_viscous_;
+  std::vector<Mat3> viscous_deformation_;  // F of the cells at objective.lag [-]
   std::vector<Index> edge_spring_start_, edge_springs_;  // spring ids (edges + 1)
 
   // Rows of the nodes.
