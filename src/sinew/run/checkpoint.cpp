@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view magic = "SINEWCP3";
+constexpr std::string_view magic = "SINEWCP4";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>
@@ -26,6 +26,9 @@ void visit(Archive& a, Run& r) {
   a.value(r.state.step);
   a.value(r.state.energy.dissipated);
   a.value(r.state.energy.work_in);
+  a.array(r.state.reactions.ground);
+  a.array(r.state.reactions.tension);
+  a.array(r.state.reactions.pressure);
   a.value(r.frame);
   a.value(r.steps_left);
   a.value(r.steps_to_watch);

@@ -90,7 +90,6 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
     return;
   }
   if (scene.stepper == "implicit") {
-    refuse_projections(scene, model);
     implicit_ = std::make_unique<ImplicitStepper>(model);
     implicit_options_.scheme = scene.scheme == "sdirk2" ? Scheme::sdirk2 : Scheme::backward_euler;
     implicit_options_.tolerance = tolerance_;
@@ -194,6 +193,8 @@ bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
     run.products += report.products;
     run.residual = std::max(run.residual, report.residual);
     run.step_reductions += report.cuts;
+    run.contacts = report.contacts;
+    run.unmet_limits += report.within ? 0 : 1;
     if (run.steps_left > 0 && stop != nullptr && stop->load()) return false;
   }
   while (run.steps_left > 0) {

@@ -25,6 +25,8 @@ struct ImplicitReport {
   int products = 0;       // Hessian products
   int cuts = 0;           // steps that were cut in half
   double residual = 0.0;  // the largest that was left [-]
+  Index contacts = 0;     // nodes that the ground pushes at the end
+  bool within = true;     // the ground and the limits hold to their tolerances
 };
 
 class ImplicitStepper {
@@ -41,6 +43,11 @@ class ImplicitStepper {
   // starts from x_n + (1 - g) h v_1 and v_n + (1 - g)/g (v_1 - v_n). Both schemes are L-stable.
   // Dashpots and drag see the velocity at the end of the (part) step.
   //
+  // The ground, with friction, and the limits hold at the end of the step (solver/constraints.h).
+  // A step in which one of them acts is one of backward Euler: SDIRK2 would carry what stops an
+  // impact in its first part on into the second, by (1 - g)/g = 2.4, and throw the body back.
+  // Impacts are plastic, whatever the ground's restitution.
+  //
   // Where Newton's method does not arrive, the step is taken in two halves, and so on. Throws
   // Error(diverged) where ten halvings are not enough.
   ImplicitReport step(double h, const ImplicitOptions& options, State& state);
@@ -49,6 +56,10 @@ class ImplicitStepper {
 
  private:
   bool try_step(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
+  bool sdirk2(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
+  bool backward_euler(double h, const ImplicitOptions& options, State& state,
+                      ImplicitReport& report);
+  void account(const Field& before, double weight, State& state);
   bool solve(const Field& from, const Field& velocity, double h, const ImplicitOptions& options,
              State& state, ImplicitReport& report);
 
@@ -56,6 +67,7 @@ class ImplicitStepper {
   Workspace workspace_;
   double inertia_ = 0.0;  // what preconditioner_ was made for
   std::unique_ptr<ScalarPreconditioner> preconditioner_;
+  std::unique_ptr<Constraints> constraints_;
 };
 
 }  // namespace sinew

@@ -95,6 +95,9 @@ void hessian_times(const Objective& objective, const Field& x, const Field& d, W
     damping_times(objective, d, workspace, damped);
     add(out, objective.rate, damped);
   }
+  if (objective.constraints != nullptr) {
+    objective.constraints->add_stiffness_times(d, workspace, out);
+  }
 }
 
 // See minimise().
@@ -127,6 +130,7 @@ int newton_direction(const Objective& objective, const Field& x, const Field& r0
                      const ScalarPreconditioner& preconditioner, Workspace& workspace, Field& p) {
   const Model& model = objective.model;
   prepare_stiffness(model, x, workspace);
+  if (objective.constraints != nullptr) objective.constraints->linearise(x, workspace);
   p.assign(r0.size(), Vec3::Zero());
   Field r(r0), z, q(r0.size());
   precondition(model, preconditioner, r, workspace, z);
@@ -237,12 +241,18 @@ double objective_value(const Objective& objective, const State& state, Workspace
   if (objective.rate > 0.0) {
     e += 0.5 * objective.rate * damping_power(model, *objective.lag, way(objective, state));
   }
+  if (objective.constraints != nullptr) {
+    e += objective.constraints->value(state.position, workspace);
+  }
   return e;
 }
 
 Field objective_force(const Objective& objective, const State& state, Workspace& workspace) {
   const Model& model = objective.model;
   compute_forces(model, state, workspace);
+  if (objective.constraints != nullptr) {
+    objective.constraints->add_forces(state.position, workspace, workspace.force);
+  }
   Field f = workspace.force;
   if (objective.rate > 0.0) {
     Field damped;
