@@ -5,14 +5,17 @@
 #include <cmath>
 #include <numbers>
 
+#include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/base/random.h"
 #include "sinew/forces/limits.h"
+#include "sinew/forces/righting.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/forces/volume.h"
 #include "sinew/solver/bound.h"
 #include "sinew/solver/implicit.h"
+#include "sinew/solver/static.h"
 #include "tests/support/effort.h"
 #include "tests/support/models.h"
 
@@ -177,15 +180,14 @@ TEST(Constraints, ADroppedBoxComesToRestOnTheGround) {
     State s = initial_state(m);
     Workspace workspace(m);
     ImplicitStepper stepper(m);
-    const double start = measure_energies(m, s, workspace).kinetic;
-    double before = start;
+    double before = measure_energies(m, s, workspace).gravity;
     for (int i = 0; i < 150; ++i) {
       const ImplicitReport report = stepper.step(frame, {}, s);
       EXPECT_TRUE(report.within);
       EXPECT_GE(lowest(m, s), -1e-3 * 0.05);
       const Energies e = measure_energies(m, s, workspace);
       const double mechanical = e.kinetic + e.elastic + e.gravity;
-      EXPECT_LE(mechanical, before + 1e-6 * weight(m) * 0.02) << young << " step " << i;
+      EXPECT_LE(mechanical, before + 1e-6 * weight(m)) << young << " step " << i;
       before = mechanical;
     }
     EXPECT_NEAR(lowest(m, s), 0.0, 1e-4 * 0.05);
@@ -197,6 +199,179 @@ TEST(Constraints, ADroppedBoxComesToRestOnTheGround) {
     EXPECT_NEAR(push.y(), weight(m), 1e-3 * weight(m));
     EXPECT_LE(std::hypot(push.x(), push.z()), 1e-3 * weight(m));
   }
+}
+
+// A box that starts at rest on a slope of the given tangent, mu = 0.5, after a second.
+Vec3 mean_velocity_on_slope(double tangent) {
+  Material material = soft(1e6);
+  material.damping_ratio = 1.0;
+  Model m = box_above_ground(material, 0.0, 0.5);
+  const double angle = std::atan(tangent);
+  m.gravity = 9.81 * Vec3(std::sin(angle), -std::cos(angle), 0.0);
+  State s = initial_state(m);
+  ImplicitStepper stepper(m);
+  for (int i = 0; i < 60; ++i) stepper.step(frame, {}, s);
+  Vec3 momentum = Vec3::Zero();
+  for (std::size_t i = 0; i < m.mass.size(); ++i) momentum += m.mass[i] * s.half_velocity[i];
+  return momentum / (weight(m) / 9.81);
+}
+
+TEST(Constraints, ASlopeHoldsUpToTheFrictionAngle) {
+  EXPECT_LE(mean_velocity_on_slope(0.98 * 0.5).norm(), 1e-5);
+  for (const double tangent : {1.02 * 0.5, 0.7}) {
+    const double angle = std::atan(tangent);
+    const double slide = 9.81 * (std::sin(angle) - 0.5 * std::cos(angle));
+    EXPECT_NEAR(mean_velocity_on_slope(tangent).x(), slide, 0.02 * slide) << tangent;
+  }
+}
+
+TEST(Constraints, ASlidingBoxStopsWhereFrictionHasTakenItsEnergy) {
+  Material material = soft(1e6);
+  material.damping_ratio = 1.0;
+  const Model m = box_above_ground(material, 0.0, 0.5, 1);
+  State s = initial_state(m);
+  const double speed = 1.0;
+  for (Vec3& v : s.half_velocity) v = Vec3(speed, 0, 0);
+  const double kinetic = 0.5 * weight(m) / 9.81 * speed * speed;
+  ImplicitStepper stepper(m);
+  for (int i = 0; i < 60; ++i) stepper.step(frame, {}, s);
+  // v^2 / (2 mu g), less what a step of backward Euler is ahead of it: mu g h t / 2.
+  const double stop = speed / (0.5 * 9.81);
+  const double way = 0.5 * speed * stop - 0.5 * speed * frame;
+  EXPECT_NEAR(s.position[0].x() - m.rest_position[0].x(), way, 0.05 * way);
+  for (const Vec3& v : s.half_velocity) EXPECT_LE(v.norm(), 1e-4);
+  EXPECT_NEAR(s.energy.dissipated, kinetic, 0.05 * kinetic);
+}
+
+TEST(Constraints, ThePlasticImpactOfAMassIsAllDissipated) {
+  Model m = point_masses({{Vec3(0, 0, 0), 2.0, Vec3(0, -3, 0)}});
+  m.gravity = Vec3(0, -10, 0);
+  m.ground = Ground{Vec3(0, -0.5, 0), Vec3::UnitY(), 0.0, 0.5};
+  finish(m);
+  State s = initial_state(m);
+  ImplicitStepper stepper(m);
+  for (int i = 0; i < 60; ++i) stepper.step(0.005, {}, s);
+  EXPECT_NEAR(s.position[0].y(), -0.5, 1e-6);
+  EXPECT_NEAR(s.half_velocity[0].norm(), 0.0, 1e-6);
+  // 9 J of motion and 10 J of height; backward Euler keeps part of the impact to itself.
+  EXPECT_NEAR(s.energy.dissipated, 19.0, 0.5);
+}
+
+TEST(Constraints, StretchLimitsHoldUnderAHeavyLoadAtAnyStiffness) {
+  for (const double young : {1e2, 1e5, 1e9}) {
+    if (test::sanitized && young != 1e5) continue;
+    Model m = tissue_box(soft(young), {2, 4, 2}, Vec3(0.05, 0.1, 0.05));
+    std::fill(m.stretch_limit.begin(), m.stretch_limit.end(), 0.1);
+    m.pins.push_back({"top", test::nodes_at(m, 1, 0.05), {}});
+    m.loads.push_back({"pull", test::nodes_at(m, 1, -0.05), Vec3(0, -100, 0)});
+    finish(m);
+    State s = initial_state(m);
+    ImplicitStepper stepper(m);
+    for (int i = 0; i < 30; ++i) {
+      EXPECT_TRUE(stepper.step(frame, {}, s).within) << young << " step " << i;
+      EXPECT_LE(measure_limit_violation(m, s.position), m.limit_tolerance);
+    }
+    State rest = initial_state(m);
+    EXPECT_TRUE(StaticSolver(m).solve(1.0, {}, rest).within) << young;
+    EXPECT_LE(measure_limit_violation(m, rest.position), m.limit_tolerance);
+    // Stiff bodies never come to their limits.
+    EXPECT_EQ(act(rest.reactions), young < 1e9);
+  }
+}
+
+TEST(Constraints, VolumeLimitsHold) {
+  for (const double poisson : {0.3, 0.45}) {
+    Material material = soft(5e3, poisson);
+    material.volume_limit = 1e-3;
+    Model m = tissue_box(material, {2, 2, 4}, Vec3(0.1, 0.1, 0.2));
+    m.pins.push_back({"wall", test::nodes_at(m, 2, -0.1), {}});
+    finish(m);
+    ASSERT_TRUE(m.has_volume_limit);
+    State s = initial_state(m);
+    ImplicitStepper stepper(m);
+    for (int i = 0; i < (test::sanitized ? 2 : 30); ++i) {
+      EXPECT_TRUE(stepper.step(frame, {}, s).within);
+      EXPECT_LE(largest_cell_change(m, s.position), 1e-3 + 1e-4);
+    }
+    State rest = initial_state(m);
+    EXPECT_TRUE(StaticSolver(m).solve(1.0, {}, rest).within);
+    EXPECT_LE(largest_cell_change(m, rest.position), 1e-3 + 1e-4);
+    EXPECT_TRUE(act(rest.reactions));
+  }
+}
+
+TEST(Constraints, ABoxRestsOnTheGroundWhereItIsPutDown) {
+  const Model m = box_above_ground(soft(1e4), 0.03, 0.5);
+  State s = initial_state(m);
+  const StaticReport report = StaticSolver(m).solve(1.0, {}, s);
+  EXPECT_TRUE(report.within);
+  EXPECT_EQ(report.contacts, 9);
+  EXPECT_NEAR(lowest(m, s), 0.0, 1e-4 * 0.05);
+  Vec3 push = Vec3::Zero(), drift = Vec3::Zero();
+  for (const Vec3& p : s.reactions.ground) push += p;
+  for (std::size_t i = 0; i < s.position.size(); ++i) {
+    drift += m.mass[i] * (s.position[i] - m.rest_position[i]);
+  }
+  drift /= weight(m) / 9.81;
+  EXPECT_LE((push - Vec3(0, weight(m), 0)).norm(), 1e-4 * weight(m));
+  EXPECT_LE(std::hypot(drift.x(), drift.z()), 1e-5);
+}
+
+TEST(Constraints, ARestStateOnASlopeIsRefused) {
+  Model m = box_above_ground(soft(), 0.0, 0.5);
+  m.gravity = Vec3(1, -9, 0);
+  State s = initial_state(m);
+  EXPECT_THROW(StaticSolver(m).solve(1.0, {}, s), Error);
+}
+
+TEST(Constraints, TangledBodiesAreLedBack) {
+  for (const bool held : {false, true}) {
+    for (const test::Tangle tangle : test::tangles) {
+      if (test::sanitized && tangle != test::Tangle::inverted) continue;
+      Material material = soft(1e4);
+      material.damping_ratio = 0.5;
+      Model m = tissue_box(material, {3, 3, 3});
+      m.gravity.setZero();
+      if (held) m.pins.push_back({"wall", test::nodes_at(m, 0, -0.05), {}});
+      finish(m);
+      State s = initial_state(m);
+      test::tangle_nodes(m, tangle, s.position);
+      ImplicitStepper stepper(m);
+      int righted = 0;
+      for (int i = 0; i < 60; ++i) righted += stepper.step(frame, {}, s).righted;
+      EXPECT_GT(righted, 0);
+      EXPECT_LT(righted, 20);
+      const std::vector<Vec3> shape = rest_shape_at(m, m.bodies[0], s.position);
+      double off = 0.0;
+      for (std::size_t i = 0; i < shape.size(); ++i) {
+        off = std::max(off, (s.position[i] - shape[i]).norm());
+      }
+      EXPECT_LE(off, 1e-3) << held << " " << static_cast<int>(tangle);
+    }
+  }
+}
+
+TEST(Constraints, SameBitsAtAnyThreadCountAndFromASavedState) {
+  Material material = soft();
+  material.volume_limit = 0.01;
+  Model m = tissue_box(material, {10, 10, 10});
+  std::fill(m.stretch_limit.begin(), m.stretch_limit.end(), 0.05);
+  m.ground = Ground{Vec3(0, -0.051, 0), Vec3(0.1, 1, 0).normalized(), 0.0, 0.5};
+  finish(m);
+  const int steps = test::sanitized ? 1 : 4;
+  std::vector<std::uint64_t> hashes;
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    State s = initial_state(m);
+    ImplicitStepper stepper(m);
+    for (int i = 0; i < steps; ++i) stepper.step(frame, {}, s);
+    EXPECT_TRUE(act(s.reactions));
+    hashes.push_back(s.hash());
+  }
+  EXPECT_EQ(hashes[0], hashes[1]);
+  State s = initial_state(m);
+  for (int i = 0; i < steps; ++i) ImplicitStepper(m).step(frame, {}, s);
+  EXPECT_EQ(s.hash(), hashes[0]);
 }
 
 }  // namespace

@@ -44,19 +44,6 @@ double typed_step(double h) {
       Location{scene.file});
 }
 
-// Rest states and implicit steps are minima of an energy: what acts as a projection after the step
-// is no part of it.
-void refuse_projections(const Scene& scene, const Model& model) {
-  const char* what = model.ground             ? "[ground]"
-                     : !model.limited.empty() ? "stretch_limit and compress_limit"
-                     : model.has_volume_limit ? "volume_limit"
-                                              : nullptr;
-  if (what == nullptr) return;
-  throw Error(ErrorKind::input,
-              fmt::format("stepper = \"{}\" does not know {}", scene.stepper, what),
-              "take it out of the scene, or take stepper = \"verlet\"", Location{scene.file});
-}
-
 // Rest states differ from frame to frame only where pins, loads or obstacles change with time.
 bool changes_with_time(const Model& model) {
   for (const Obstacle& o : model.obstacles) {
@@ -83,7 +70,6 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
       interval_(1.0 / scene.output.fps),
       tolerance_(scene.tolerance) {
   if (scene.stepper == "static") {
-    refuse_projections(scene, model);
     static_ = std::make_unique<StaticSolver>(model);
     if (!changes_with_time(model)) interval_ = duration_;
     frames_ = round_up(duration_ / interval_);
@@ -178,6 +164,8 @@ bool Stepping::rest_frame(RunState& run, const std::atomic<bool>* stop) {
   run.newton_steps += report.newton;
   run.products += report.products;
   run.residual = report.residual;
+  run.contacts = report.contacts;
+  run.unmet_limits += report.within ? 0 : 1;
   if (report.stopped) return false;
   ++run.frame;
   return true;
@@ -195,6 +183,7 @@ bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
     run.step_reductions += report.cuts;
     run.contacts = report.contacts;
     run.unmet_limits += report.within ? 0 : 1;
+    run.righting_steps += report.righted;
     if (run.steps_left > 0 && stop != nullptr && stop->load()) return false;
   }
   while (run.steps_left > 0) {

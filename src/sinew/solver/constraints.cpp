@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/network.h"
@@ -19,14 +20,6 @@ constexpr double ground_tolerance = 1e-4;
 constexpr double cell_tolerance = 1e-4;
 // Friction goes by normal forces that are right to this share.
 constexpr double grip_tolerance = 0.01;
-
-// Edge of the regular tet of the mean volume [m]; 0 where there are no tets.
-double mean_edge(const Model& model) {
-  double volume = 0.0;
-  for (const double v : model.rest_volume) volume += v;
-  const double tets = std::max(1.0, static_cast<double>(model.tets.size()));
-  return std::cbrt(6.0 * std::sqrt(2.0) * volume / tets);
-}
 
 // 1/D_i [m/N] (nodes), 0 where the motion is given: the diagonal of M inertia + C rate + K at rest.
 std::vector<double> node_compliance(const Model& model, double inertia, double rate) {
@@ -122,14 +115,22 @@ double parallel_max(std::size_t n, const F& f) {
 
 }  // namespace
 
+double mean_edge(const Model& model) {
+  const auto mean = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  if (!model.tets.empty()) return std::cbrt(6.0 * std::sqrt(2.0) * mean(model.rest_volume));
+  return model.springs.empty() ? 0.0 : mean(model.rest_length);
+}
+
 Constraints::Constraints(const Model& model, double inertia, double rate, bool friction)
     : model_(model), friction_(friction && model.ground && model.ground->friction > 0.0) {
   if (!model.ground && model.limited.empty() && !model.has_volume_limit) return;
   const std::vector<double> compliance = node_compliance(model, inertia, rate);
   if (model.ground) {
-    // Without tets, by what a free fall does in a step.
-    const double edge = model.tets.empty() ? model.gravity.norm() / inertia : mean_edge(model);
-    ground_tolerance_ = ground_tolerance * edge;
+    // Single masses have no size but the way they fall in a step.
+    const double edge = mean_edge(model);
+    ground_tolerance_ = ground_tolerance * (edge > 0.0 ? edge : model.gravity.norm() / inertia);
     ground_stiffness_.assign(uz(model.body_node_count()), 0.0);
     for (std::size_t i = 0; i < ground_stiffness_.size(); ++i) {
       if (compliance[i] > 0.0) ground_stiffness_[i] = ratio / compliance[i];

@@ -96,6 +96,9 @@ class Constraints {
   std::vector<double> cell_tangent_;
 };
 
+// Edge of the regular tet of the mean volume [m]; without tets the mean length of the springs.
+double mean_edge(const Model& model);
+
 // Whether anything pushes.
 bool act(const Reactions& reactions);
 

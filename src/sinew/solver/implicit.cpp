@@ -8,6 +8,8 @@
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/forces/loads.h"
+#include "sinew/forces/righting.h"
+#include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 
 namespace sinew {
@@ -153,6 +155,13 @@ bool ImplicitStepper::try_step(double h, const ImplicitOptions& options, State& 
 }
 
 ImplicitReport ImplicitStepper::step(double h, const ImplicitOptions& options, State& state) {
+  prepare_stiffness(model_, state.position, workspace_);
+  if (find_tangled(model_, workspace_) > 0) return lead_back(h, options, state);
+  return advance(h, options, state);
+}
+
+// Steps that are cut in half where Newton's method does not arrive.
+ImplicitReport ImplicitStepper::advance(double h, const ImplicitOptions& options, State& state) {
   ImplicitReport report;
   const State start = state;
   double length = h;

@@ -26,6 +26,7 @@ struct ImplicitReport {
   int cuts = 0;           // steps that were cut in half
   double residual = 0.0;  // the largest that was left [-]
   Index contacts = 0;     // nodes that the ground pushes at the end
+  int righted = 0;        // 1 where a tangled body was led back
   bool within = true;     // the ground and the limits hold to their tolerances
 };
 
@@ -48,6 +49,8 @@ class ImplicitStepper {
   // impact in its first part on into the second, by (1 - g)/g = 2.4, and throw the body back.
   // Impacts are plastic, whatever the ground's restitution.
   //
+  // A tangled body (forces/righting.h) is led back towards its rest shape instead.
+  //
   // Where Newton's method does not arrive, the step is taken in two halves, and so on. Throws
   // Error(diverged) where ten halvings are not enough.
   ImplicitReport step(double h, const ImplicitOptions& options, State& state);
@@ -55,6 +58,8 @@ class ImplicitStepper {
   Workspace& workspace() { return workspace_; }
 
  private:
+  ImplicitReport advance(double h, const ImplicitOptions& options, State& state);
+  ImplicitReport lead_back(double h, const ImplicitOptions& options, State& state);
   bool try_step(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
   bool sdirk2(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
   bool backward_euler(double h, const ImplicitOptions& options, State& state,
