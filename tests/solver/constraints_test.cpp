@@ -244,7 +244,8 @@ TEST(Constraints, ASlidingBoxStopsWhereFrictionHasTakenItsEnergy) {
 }
 
 TEST(Constraints, ThePlasticImpactOfAMassIsAllDissipated) {
-  Model m = point_masses({{Vec3(0, 0, 0), 2.0, Vec3(0, -3, 0)}});
+  Model m =
+      point_masses({{Vec3(0, 0, 0), 1.0, Vec3(0, -3, 0)}, {Vec3(1, 0, 0), 1.0, Vec3(0, -3, 0)}});
   m.gravity = Vec3(0, -10, 0);
   m.ground = Ground{Vec3(0, -0.5, 0), Vec3::UnitY(), 0.0, 0.5};
   finish(m);
@@ -338,7 +339,7 @@ TEST(Constraints, TangledBodiesAreLedBack) {
       test::tangle_nodes(m, tangle, s.position);
       ImplicitStepper stepper(m);
       int righted = 0;
-      for (int i = 0; i < 60; ++i) righted += stepper.step(frame, {}, s).righted;
+      for (int i = 0; i < 90; ++i) righted += stepper.step(frame, {}, s).righted;
       EXPECT_GT(righted, 0);
       EXPECT_LT(righted, 20);
       const std::vector<Vec3> shape = rest_shape_at(m, m.bodies[0], s.position);
@@ -354,11 +355,11 @@ TEST(Constraints, TangledBodiesAreLedBack) {
 TEST(Constraints, SameBitsAtAnyThreadCountAndFromASavedState) {
   Material material = soft();
   material.volume_limit = 0.01;
-  Model m = tissue_box(material, {10, 10, 10});
+  Model m = tissue_box(material, {8, 8, 8});
   std::fill(m.stretch_limit.begin(), m.stretch_limit.end(), 0.05);
   m.ground = Ground{Vec3(0, -0.051, 0), Vec3(0.1, 1, 0).normalized(), 0.0, 0.5};
   finish(m);
-  const int steps = test::sanitized ? 1 : 4;
+  const int steps = test::sanitized ? 1 : 2;
   std::vector<std::uint64_t> hashes;
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);

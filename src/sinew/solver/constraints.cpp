@@ -19,7 +19,7 @@ constexpr double ratio = 10.0;  // of a condition's stiffness and what its nodes
 constexpr double ground_tolerance = 1e-4;
 constexpr double cell_tolerance = 1e-4;
 // Friction goes by normal forces that are right to this share.
-constexpr double grip_tolerance = 0.01;
+constexpr double grip_tolerance = 2e-3;
 
 // 1/D_i [m/N] (nodes), 0 where the motion is given: the diagonal of M inertia + C rate + K at rest.
 std::vector<double> node_compliance(const Model& model, double inertia, double rate) {
@@ -343,7 +343,7 @@ void Constraints::add_stiffness_times(const std::vector<Vec3>& u, Workspace& wor
   });
 }
 
-double Constraints::update(const std::vector<Vec3>& x, const Workspace& workspace) {
+ConstraintError Constraints::update(const std::vector<Vec3>& x, const Workspace& workspace) {
   Reactions next = now_;
   const double ground = parallel_max(next.ground.size(), [&](std::size_t i) {
     if (ground_stiffness_[i] == 0.0) return 0.0;
@@ -379,7 +379,7 @@ double Constraints::update(const std::vector<Vec3>& x, const Workspace& workspac
     if (change > 0.0) grips = sum > 0.0 ? change / (grip_tolerance * sum) : no_limit;
   }
   now_ = std::move(next);
-  return std::max({ground, springs, cells, std::min(grips, 1e6)});
+  return {std::max({ground, springs, cells}), grips};
 }
 
 Index Constraints::contacts() const {

@@ -9,6 +9,13 @@
 
 namespace sinew {
 
+// How far conditions and friction are from where they have to be, over what is good enough: at most
+// 1 when they hold.
+struct ConstraintError {
+  double distance = 0.0;  // largest change of a push over k, a way past the bound
+  double grip = 0.0;      // change of the normal forces that friction goes by, of their sum
+};
+
 // Conditions on
 //   the height of each free node above the ground       n . (x - point) >= 0
 //   the length of each limited spring                   (1 - tau_c) l0 <= l <= (1 + tau_s) l0
@@ -62,9 +69,8 @@ class Constraints {
 
   // --- the multipliers ---
 
-  // Makes the pushes at x the multipliers. Returns the largest distance between what they were for
-  // and where the quantities are, over what is good enough: at most 1 when the conditions hold.
-  double update(const std::vector<Vec3>& x, const Workspace& workspace);
+  // Makes the pushes at x the multipliers; returns how far they were off.
+  ConstraintError update(const std::vector<Vec3>& x, const Workspace& workspace);
   // Multiplies every k; start() takes that back.
   void harden(double factor) { hardness_ *= factor; }
 

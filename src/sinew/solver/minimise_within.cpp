@@ -1,5 +1,6 @@
 // The outer loop of the augmented Lagrangian. docs/methods/constraints.md.
 #include <algorithm>
+#include <cmath>
 
 #include "sinew/solver/newton.h"
 
@@ -7,7 +8,8 @@ namespace sinew {
 namespace {
 
 constexpr int most_passes = 30;
-// While the multipliers are still being found it is enough to come this close [-].
+// How close the first pass has to come to rest, and every later one a tenth of that, while the
+// multipliers are still being found [-].
 constexpr double on_the_way = 1e-2;
 // A pass that leaves more than this share of the error calls for stiffer conditions.
 constexpr double slow = 0.5;
@@ -21,10 +23,11 @@ NewtonReport minimise_within(const Objective& objective, const ScalarPreconditio
     return minimise(objective, preconditioner, options, workspace, state);
   }
   NewtonReport report;
-  double error = no_limit;  // of the pass before, over what is good enough
+  report.within = false;
+  double distance = no_limit;  // of the pass before
   for (int pass = 0; pass < most_passes; ++pass) {
     NewtonOptions o = options;
-    if (error > 1.0) o.tolerance = std::max(o.tolerance, on_the_way);
+    if (!report.within) o.tolerance = std::max(o.tolerance, on_the_way * std::pow(0.1, pass));
     const NewtonReport of_pass = minimise(objective, preconditioner, o, workspace, state);
     report.newton += of_pass.newton;
     report.products += of_pass.products;
@@ -32,11 +35,11 @@ NewtonReport minimise_within(const Objective& objective, const ScalarPreconditio
     report.residual = of_pass.residual;
     report.rests = of_pass.rests && o.tolerance == options.tolerance;
     report.stopped = of_pass.stopped;
-    const double now = objective.constraints->update(state.position, workspace);
-    report.within = now <= 1.0;
+    const ConstraintError error = objective.constraints->update(state.position, workspace);
+    report.within = error.distance <= 1.0 && error.grip <= 1.0;
     if (!of_pass.rests || of_pass.stopped || (report.rests && report.within)) return report;
-    if (now > 1.0 && now > slow * error) objective.constraints->harden(stiffer);
-    error = now;
+    if (error.distance > std::max(1.0, slow * distance)) objective.constraints->harden(stiffer);
+    distance = error.distance;
   }
   return report;
 }
