@@ -201,8 +201,9 @@ TEST(Constraints, ADroppedBoxComesToRestOnTheGround) {
   }
 }
 
-// A box that starts at rest on a slope of the given tangent, mu = 0.5, after a second.
-Vec3 mean_velocity_on_slope(double tangent) {
+// Acceleration of a box on a slope of the given tangent, mu = 0.5, over half a second, half a
+// second after it was put there (while it settles, friction also works across the slope).
+Vec3 acceleration_on_slope(double tangent) {
   Material material = soft(1e6);
   material.damping_ratio = 1.0;
   Model m = box_above_ground(material, 0.0, 0.5);
@@ -210,18 +211,22 @@ Vec3 mean_velocity_on_slope(double tangent) {
   m.gravity = 9.81 * Vec3(std::sin(angle), -std::cos(angle), 0.0);
   State s = initial_state(m);
   ImplicitStepper stepper(m);
-  for (int i = 0; i < 60; ++i) stepper.step(frame, {}, s);
-  Vec3 momentum = Vec3::Zero();
-  for (std::size_t i = 0; i < m.mass.size(); ++i) momentum += m.mass[i] * s.half_velocity[i];
-  return momentum / (weight(m) / 9.81);
+  const auto mean_velocity = [&] {
+    for (int i = 0; i < 30; ++i) stepper.step(frame, {}, s);
+    Vec3 momentum = Vec3::Zero();
+    for (std::size_t i = 0; i < m.mass.size(); ++i) momentum += m.mass[i] * s.half_velocity[i];
+    return Vec3(momentum / (weight(m) / 9.81));
+  };
+  const Vec3 before = mean_velocity();
+  return (mean_velocity() - before) / 0.5;
 }
 
 TEST(Constraints, ASlopeHoldsUpToTheFrictionAngle) {
-  EXPECT_LE(mean_velocity_on_slope(0.98 * 0.5).norm(), 1e-5);
+  EXPECT_LE(acceleration_on_slope(0.98 * 0.5).norm(), 1e-5);
   for (const double tangent : {1.02 * 0.5, 0.7}) {
     const double angle = std::atan(tangent);
     const double slide = 9.81 * (std::sin(angle) - 0.5 * std::cos(angle));
-    EXPECT_NEAR(mean_velocity_on_slope(tangent).x(), slide, 0.02 * slide) << tangent;
+    EXPECT_NEAR(acceleration_on_slope(tangent).x(), slide, 0.02 * slide) << tangent;
   }
 }
 
@@ -331,6 +336,7 @@ TEST(Constraints, TangledBodiesAreLedBack) {
       if (test::sanitized && tangle != test::Tangle::inverted) continue;
       Material material = soft(1e4);
       material.damping_ratio = 0.5;
+      material.drag = 10.0;
       Model m = tissue_box(material, {3, 3, 3});
       m.gravity.setZero();
       if (held) m.pins.push_back({"wall", test::nodes_at(m, 0, -0.05), {}});
@@ -353,25 +359,26 @@ TEST(Constraints, TangledBodiesAreLedBack) {
 }
 
 TEST(Constraints, SameBitsAtAnyThreadCountAndFromASavedState) {
-  Material material = soft();
-  material.volume_limit = 0.01;
+  Material material = soft(1e4);
+  material.volume_limit = 0.002;
   Model m = tissue_box(material, {8, 8, 8});
-  std::fill(m.stretch_limit.begin(), m.stretch_limit.end(), 0.05);
-  m.ground = Ground{Vec3(0, -0.051, 0), Vec3(0.1, 1, 0).normalized(), 0.0, 0.5};
+  std::fill(m.stretch_limit.begin(), m.stretch_limit.end(), 0.01);
+  m.ground = Ground{Vec3(0, -0.05, 0), Vec3::UnitY(), 0.0, 0.5};
   finish(m);
   const int steps = test::sanitized ? 1 : 2;
+  const ImplicitOptions options{.scheme = Scheme::backward_euler, .tolerance = 1e-2};
   std::vector<std::uint64_t> hashes;
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
     State s = initial_state(m);
     ImplicitStepper stepper(m);
-    for (int i = 0; i < steps; ++i) stepper.step(frame, {}, s);
+    for (int i = 0; i < steps; ++i) stepper.step(frame, options, s);
     EXPECT_TRUE(act(s.reactions));
     hashes.push_back(s.hash());
   }
   EXPECT_EQ(hashes[0], hashes[1]);
   State s = initial_state(m);
-  for (int i = 0; i < steps; ++i) ImplicitStepper(m).step(frame, {}, s);
+  for (int i = 0; i < steps; ++i) ImplicitStepper(m).step(frame, options, s);
   EXPECT_EQ(s.hash(), hashes[0]);
 }
 
