@@ -127,6 +127,42 @@ TEST_F(Run, ResumeAfterAStopEndsWithTheSameBits) {
   }
 }
 
+// What the ground and the limits push with goes from step to step, and so into the checkpoint.
+TEST_F(Run, ImplicitStepsOnTheGroundResumeToTheSameBits) {
+  const Scene scene = scene_of(R"(
+stepper = "implicit"
+duration = 0.2
+[output]
+checkpoint = 0
+[ground]
+normal = [0.1, 1, 0]
+restitution = 0.1
+[body.box]
+shape = "box"
+cells = [2, 2, 2]
+size = [0.1, 0.1, 0.1]
+center = [0, 0.06, 0]
+young = 2e4
+stretch_limit = 0.1
+volume_limit = 0.01
+)");
+  const RunResult whole = run_scene(scene, {});
+  EXPECT_GT(whole.summary.contacts, 0);
+  EXPECT_GT(whole.summary.energy.dissipated, 0.0);
+  EXPECT_EQ(whole.summary.unmet_limits, 0);
+  EXPECT_LE(whole.summary.largest_cell_change, 0.0101);
+  ASSERT_EQ(whole.summary.warnings.size(), 1u);
+  EXPECT_NE(whole.summary.warnings[0].find("restitution"), std::string::npos);
+  std::atomic<bool> stop{false};
+  RunOptions options = into_folder();
+  options.stop = &stop;
+  options.on_progress = [&](const Progress& p) { stop = p.frame >= 4; };
+  ASSERT_EQ(run_scene(scene, options).status, RunStatus::interrupted);
+  const RunResult rest = resume_run(folder_, {});
+  EXPECT_EQ(rest.summary.state_hash, whole.summary.state_hash);
+  EXPECT_EQ(rest.summary.energy.dissipated, whole.summary.energy.dissipated);
+}
+
 TEST_F(Run, ResumingAFinishedRunChangesNothing) {
   const RunResult whole = run_scene(scene_of(hanging_box), into_folder());
   const std::vector<std::string> rows = lines("energy.csv");

@@ -128,4 +128,26 @@ void right_tangled_bodies(const Model& model, const State& state, double h, Work
   }
 }
 
+void lead_tangled_bodies(const Model& model, double h, const Workspace& workspace, State& state) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (workspace.tangled[b] == 0) continue;
+    const Body& body = model.bodies[b];
+    const std::vector<Vec3> goal = rest_shape_at(model, body, state.position);
+    const double w = frequency(model, body, 0.0);
+    const bool held = count_held(model, body) > 0;
+    const Vec3 drift = held ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
+    const Vec3 falling = held ? drift : Vec3(drift + h * model.gravity);
+    const double decay = std::exp(-w * h);
+    parallel_for(body.nodes.size(), [&](Index k) {
+      const auto i = uz(body.nodes.begin + k);
+      if (model.inverse_mass[i] == 0.0) return;
+      const Vec3 offset = state.position[i] - goal[uz(k)];
+      const Vec3 speed = state.half_velocity[i] - drift;
+      const Vec3 c = speed + w * offset;
+      state.position[i] = goal[uz(k)] + h * falling + decay * (offset + h * c);
+      state.half_velocity[i] = falling + decay * (speed - w * h * c);
+    });
+  }
+}
+
 }  // namespace sinew

@@ -33,4 +33,9 @@ std::vector<Vec3> rest_shape_at(const Model& model, const Body& body, std::span<
 // takes to cross the body, at most 0.3 / h. h: length of the step [s].
 void right_tangled_bodies(const Model& model, const State& state, double h, Workspace& workspace);
 
+// The same pull over a step of any length, in closed form: on the free nodes of the bodies in
+// workspace.tangled,  x = g + (d + c h) e^-wh + v h,  d = x - g,  c = (v_i - v) + w d, with w not
+// limited; a body that nothing holds falls with gravity as a whole. Sets positions and velocities.
+void lead_tangled_bodies(const Model& model, double h, const Workspace& workspace, State& state);
+
 }  // namespace sinew

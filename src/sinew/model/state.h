@@ -15,6 +15,14 @@ struct EnergyAccount {
   double work_in = 0.0;     // by moving pins and loads
 };
 
+// What the ground and the limits push with at the end of the last implicit step, where the next one
+// starts from; empty before the first, and with Verlet (solver/constraints.h).
+struct Reactions {
+  std::vector<Vec3> ground;      // of the ground on each node [N] (nodes of bodies)
+  std::vector<double> tension;   // of each limited spring [N] (as Model::limited), < 0: it pushes
+  std::vector<double> pressure;  // on the volume of each limited cell [Pa] (cells), > 0: inwards
+};
+
 struct State {
   std::vector<Vec3> position;  // x(t) [m] (nodes)
   std::vector<Vec3>
@@ -23,6 +31,7 @@ struct State {
   double time = 0.0;       // [s]
   std::int64_t step = 0;   // steps taken
   EnergyAccount energy;
+  Reactions reactions;
 
   // Positions, velocities, time and step: equal runs have equal hashes at any thread count.
   std::uint64_t hash() const;

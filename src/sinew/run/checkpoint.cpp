@@ -28,6 +28,9 @@ void visit(Archive& a, Run& r) {
   a.value(r.state.energy.work_in);
   a.array(r.stepper);
   a.array(r.stepper_reason);
+  a.array(r.state.reactions.ground);
+  a.array(r.state.reactions.tension);
+  a.array(r.state.reactions.pressure);
   a.value(r.frame);
   a.value(r.steps_left);
   a.value(r.steps_to_watch);

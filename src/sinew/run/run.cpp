@@ -153,10 +153,14 @@ class Runner {
                       *scene_.dt / scene_.substeps, run.smallest_stable_step, run.step_reductions));
     }
     if (run.unmet_limits > 0) {
+      const char* remedy = scene_.stepper == "verlet" ? "more limit_sweeps" : "a smaller dt";
       s.warnings.push_back(
-          fmt::format("{} of {} steps ended with a limit violated; more limit_sweeps, or a larger "
+          fmt::format("{} of {} steps ended with a limit violated; {}, or a larger "
                       "limit_tolerance, or limits that the pins leave room for",
-                      run.unmet_limits, run.state.step));
+                      run.unmet_limits, run.state.step, remedy));
+    }
+    if (model_.ground && model_.ground->restitution > 0.0 && scene_.stepper == "implicit") {
+      s.warnings.push_back("implicit steps know no restitution: every impact is plastic");
     }
     if (run.righting_steps > 0) {
       s.warnings.push_back(fmt::format(

@@ -45,20 +45,9 @@ double typed_step(double h) {
       Location{scene.file});
 }
 
-// What acts as a projection after the step, and so is no part of the energy that rest states and
-// implicit steps are minima of; null where the model has no such thing.
-const char* projection_of(const Model& model) {
-  return model.ground             ? "[ground]"
-         : !model.limited.empty() ? "stretch_limit and compress_limit"
-         : model.has_volume_limit ? "volume_limit"
-                                  : nullptr;
-}
-
-void refuse_projections(const Scene& scene, const Model& model, const std::string& stepper) {
-  const char* what = projection_of(model);
-  if (what == nullptr) return;
-  throw Error(ErrorKind::input, fmt::format("stepper = \"{}\" does not know {}", stepper, what),
-              "take it out of the scene, or take stepper = \"verlet\"", Location{scene.file});
+// What only Verlet's step does; null where the scene has no such thing.
+const char* only_verlet_knows(const Model& model) {
+  return model.ground && model.ground->restitution > 0.0 ? "restitution" : nullptr;
 }
 
 double seconds_since(Clock::time_point start) {
@@ -93,7 +82,6 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
       tolerance_(scene.tolerance) {
   if (run.stepper.empty() && scene.stepper != "auto") run.stepper = scene.stepper;
   if (run.stepper == "static") {
-    refuse_projections(scene, model, run.stepper);
     static_ = std::make_unique<StaticSolver>(model);
     if (!changes_with_time(model)) interval_ = duration_;
     frames_ = round_up(duration_ / interval_);
@@ -118,7 +106,6 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
   }
   if (run.stepper.empty()) choose(scene, stable, implicit_step, run);
   if (run.stepper == "implicit") {
-    refuse_projections(scene, model, run.stepper);
     if (budget_) implicit_->prepare(implicit_step, implicit_options_);
     if (goes_on) return;
     run.target_step = implicit_step;
@@ -140,7 +127,7 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
 void Stepping::choose(const Scene& scene, const StableStep& stable, double implicit_step,
                       RunState& run) {
   const Contest contest{interval_, verlet_step_at(stable.step), stable.step, implicit_step,
-                        projection_of(model_)};
+                        only_verlet_knows(model_)};
   Choice choice = choose_stepper(scene, model_, run.state, contest, implicit_options_, *implicit_);
   run.stepper = std::move(choice.stepper);
   run.stepper_reason = std::move(choice.reason);
@@ -226,6 +213,8 @@ bool Stepping::rest_frame(RunState& run, const std::atomic<bool>* stop) {
   run.products += report.products;
   run.residual = report.residual;
   run.work = {seconds_since(start), 1, report.newton, report.products, report.residual, 0};
+  run.contacts = report.contacts;
+  run.unmet_limits += report.within ? 0 : 1;
   if (report.stopped) return false;
   ++run.frame;
   return true;
@@ -246,6 +235,9 @@ void Stepping::implicit_steps(RunState& run, const std::atomic<bool>* stop) {
     run.products += report.products;
     run.residual = std::max(run.residual, report.residual);
     run.step_cuts += report.cuts;
+    run.contacts = report.contacts;
+    run.unmet_limits += report.within ? 0 : 1;
+    run.righting_steps += report.righted;
     ++run.work.steps;
     run.work.newton_steps += report.newton;
     run.work.products += report.products;

@@ -8,6 +8,8 @@
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/forces/loads.h"
+#include "sinew/forces/righting.h"
+#include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 
 namespace sinew {
@@ -67,10 +69,18 @@ void ImplicitStepper::prepare(double h, const ImplicitOptions& options) {
 bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
                             const ImplicitOptions& options, State& state, ImplicitReport& report) {
   const double inertia = 1.0 / (h * h);
+  if (std::abs(constrained_inertia_ - inertia) > 1e-9 * inertia) {
+    constraints_ = std::make_unique<Constraints>(model_, inertia, 1.0 / h, true);
+    constrained_inertia_ = inertia;
+  }
+  constraints_->start(state, &from);
   const Field lag = state.position;
   const Field inertial = blend(1.0, from, h, velocity);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
-  const Objective objective{model_, nullptr, 0.0, inertia, &inertial, 1.0 / h, &from, &lag};
+  const Objective objective{
+      model_,  nullptr,   0.0,
+      inertia, &inertial, 1.0 / h,
+      &from,   &lag,      constraints_->empty() ? nullptr : constraints_.get()};
   // From where it stands, or on as it moves: what costs less.
   move_pins(model_, state);
   const double standing = objective_value(objective, state, workspace_);
@@ -79,51 +89,87 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   move_pins(model_, state);
   if (!(objective_value(objective, state, workspace_) < standing)) state.position = stand;
 
-  const NewtonReport newton = minimise(
+  const NewtonReport newton = minimise_within(
       objective, linear_, {options.tolerance, options.max_newton, nullptr, {}, options.deadline},
       workspace_, state);
   report.newton += newton.newton;
   report.products += newton.products;
   report.residual = std::max(report.residual, newton.residual);
   report.ran_out = report.ran_out || newton.ran_out;
+  report.contacts = constraints_->contacts();
+  report.within = report.within && newton.within;
+  state.reactions = constraints_->reactions();
   state.half_velocity = blend(1.0 / h, state.position, -1.0 / h, from);
   return newton.rests || (options.deadline && newton.force < no_limit);
 }
 
-bool ImplicitStepper::try_step(double h, const ImplicitOptions& options, State& state,
-                               ImplicitReport& report) {
+// Heat of dashpots and drag by the scheme's own weights, work along the way from `before`.
+void ImplicitStepper::account(const Field& before, double weight, State& state) {
+  state.energy.dissipated += weight * damping_power(model_, before, state.half_velocity);
+  state.energy.work_in += work_of_the_outside(model_, before, state, workspace_);
+}
+
+bool ImplicitStepper::sdirk2(double h, const ImplicitOptions& options, State& state,
+                             ImplicitReport& report) {
   const Field x = state.position;
   const Field v = state.half_velocity;
   const double time = state.time;
-  state.last_step = 0.0;  // the velocity is that of the time
-  // Heat of dashpots and drag by the scheme's own weights, work along the way from `before`.
-  const auto account = [&](const Field& before, double weight, State& s) {
-    s.energy.dissipated += weight * damping_power(model_, before, s.half_velocity);
-    s.energy.work_in += work_of_the_outside(model_, before, s, workspace_);
-  };
-  if (options.scheme == Scheme::sdirk2) {
-    const double g = sdirk2_share;
-    state.time = time + g * h;
-    if (!solve(x, v, g * h, options, state, report)) return false;
-    const Field v1 = state.half_velocity;
-    account(x, (1.0 - g) * h, state);
-    const Field x1 = state.position;
-    state.time = time + h;
-    if (!solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
-               g * h, options, state, report)) {
-      return false;
-    }
-    account(x1, g * h, state);
-  } else {
-    state.time = time + h;
-    if (!solve(x, v, h, options, state, report)) return false;
-    account(x, h, state);
+  const double g = sdirk2_share;
+  state.time = time + g * h;
+  if (!solve(x, v, g * h, options, state, report)) return false;
+  if (act(state.reactions)) return true;
+  const Field v1 = state.half_velocity;
+  account(x, (1.0 - g) * h, state);
+  const Field x1 = state.position;
+  state.time = time + h;
+  if (!solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
+             g * h, options, state, report)) {
+    return false;
   }
+  account(x1, g * h, state);
+  return true;
+}
+
+bool ImplicitStepper::backward_euler(double h, const ImplicitOptions& options, State& state,
+                                     ImplicitReport& report) {
+  const Field x = state.position;
+  const Field v = state.half_velocity;
+  state.time += h;
+  if (!solve(x, v, h, options, state, report)) return false;
+  account(x, h, state);
+  if (constraints_->empty()) return true;
+  // The impulses of the ground and the limits work on the mean of the velocities before and after
+  // the step, as in Verlet's balance: none where the body just rests.
+  Field push(x.size(), Vec3::Zero());
+  constraints_->add_reactions(state.position, workspace_, push);
+  keep_free(model_, push);
+  state.energy.dissipated -= 0.5 * h * (dot(push, v) + dot(push, state.half_velocity));
+  return true;
+}
+
+bool ImplicitStepper::try_step(double h, const ImplicitOptions& options, State& state,
+                               ImplicitReport& report) {
+  state.last_step = 0.0;  // the velocity is that of the time
+  bool done = false;
+  if (options.scheme == Scheme::sdirk2 && !act(state.reactions)) {
+    const State before = state;
+    if (!sdirk2(h, options, state, report)) return false;
+    done = !act(state.reactions);
+    if (!done) state = before;
+  }
+  if (!done && !backward_euler(h, options, state, report)) return false;
   ++state.step;
   return true;
 }
 
 ImplicitReport ImplicitStepper::step(double h, const ImplicitOptions& options, State& state) {
+  prepare_stiffness(model_, state.position, workspace_);
+  if (find_tangled(model_, workspace_) > 0) return lead_back(h, options, state);
+  return advance(h, options, state);
+}
+
+// Steps that are cut in half where Newton's method does not arrive.
+ImplicitReport ImplicitStepper::advance(double h, const ImplicitOptions& options, State& state) {
   ImplicitReport report;
   const State start = state;
   double length = h;

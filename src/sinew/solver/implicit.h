@@ -1,6 +1,8 @@
 // Implicit steps: stable at any length. docs/methods/implicit.md.
 #pragma once
 
+#include <memory>
+
 #include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/linear_solver.h"
@@ -25,6 +27,9 @@ struct ImplicitReport {
   int cuts = 0;           // steps that were cut in half
   double residual = 0.0;  // the largest that was left [-]
   bool ran_out = false;   // of time, see ImplicitOptions::deadline
+  Index contacts = 0;     // nodes that the ground pushes at the end
+  int righted = 0;        // 1 where a tangled body was led back
+  bool within = true;     // the ground and the limits hold to their tolerances
 };
 
 class ImplicitStepper {
@@ -41,6 +46,13 @@ class ImplicitStepper {
   // starts from x_n + (1 - g) h v_1 and v_n + (1 - g)/g (v_1 - v_n). Both schemes are L-stable.
   // Dashpots and drag see the velocity at the end of the (part) step.
   //
+  // The ground, with friction, and the limits hold at the end of the step (solver/constraints.h).
+  // A step in which one of them acts is one of backward Euler: SDIRK2 would carry what stops an
+  // impact in its first part on into the second, by (1 - g)/g = 2.4, and throw the body back.
+  // Impacts are plastic, whatever the ground's restitution.
+  //
+  // A tangled body (forces/righting.h) is led back towards its rest shape instead.
+  //
   // Where Newton's method does not arrive, the step is taken in two halves, and so on. Throws
   // Error(diverged) where ten halvings are not enough. With a deadline the step is what Newton's
   // method has by then, and no step is cut: its potential is below that of standing still.
@@ -52,13 +64,21 @@ class ImplicitStepper {
   Workspace& workspace() { return workspace_; }
 
  private:
+  ImplicitReport advance(double h, const ImplicitOptions& options, State& state);
+  ImplicitReport lead_back(double h, const ImplicitOptions& options, State& state);
   bool try_step(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
+  bool sdirk2(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
+  bool backward_euler(double h, const ImplicitOptions& options, State& state,
+                      ImplicitReport& report);
+  void account(const Field& before, double weight, State& state);
   bool solve(const Field& from, const Field& velocity, double h, const ImplicitOptions& options,
              State& state, ImplicitReport& report);
 
   const Model& model_;
   Workspace workspace_;
   LinearSolver linear_;
+  double constrained_inertia_ = 0.0;  // what constraints_ was made for
+  std::unique_ptr<Constraints> constraints_;
 };
 
 }  // namespace sinew

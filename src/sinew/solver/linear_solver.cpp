@@ -20,6 +20,7 @@ void LinearSolver::factor(const Objective& objective, Workspace& workspace) {
   const Field& rest_position = objective.model.rest_position;
   Objective rest = objective;
   rest.lag = &rest_position;
+  rest.constraints = nullptr;
   prepare_stiffness(objective.model, rest_position, workspace);
   matrix_.assemble(rest, rest_position, workspace);
   preconditioner_.factor(matrix_);
@@ -37,6 +38,7 @@ void LinearSolver::assemble(const Objective& objective, const Field& x, Workspac
     factor(objective, workspace);
     prepare_stiffness(objective.model, x, workspace);
   }
+  if (objective.constraints != nullptr) objective.constraints->linearise(x, workspace);
   matrix_.assemble(objective, x, workspace);
   preconditioner_.turn(x);
 }

@@ -210,12 +210,18 @@ double objective_value(const Objective& objective, const State& state, Workspace
   if (objective.rate > 0.0) {
     e += 0.5 * objective.rate * damping_power(model, *objective.lag, way(objective, state));
   }
+  if (objective.constraints != nullptr) {
+    e += objective.constraints->value(state.position, workspace);
+  }
   return e;
 }
 
 Field objective_force(const Objective& objective, const State& state, Workspace& workspace) {
   const Model& model = objective.model;
   compute_forces(model, state, workspace);
+  if (objective.constraints != nullptr) {
+    objective.constraints->add_forces(state.position, workspace, workspace.force);
+  }
   Field f = workspace.force;
   if (objective.rate > 0.0) {
     Field damped;

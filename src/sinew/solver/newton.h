@@ -8,6 +8,7 @@
 
 #include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
+#include "sinew/solver/constraints.h"
 #include "sinew/solver/deadline.h"
 
 namespace sinew {
@@ -22,6 +23,7 @@ using Field = std::vector<Vec3>;  // one vector per node
 //   inertia/2 sum_i m_i |x_i - y_i|^2        of an implicit step, inertia = 1/h^2
 //   rate/2 (x - from) . C (x - from)         dashpots, viscosity and drag over that step,
 //                                            rate = 1/h, with dashpots and viscosity as at `lag`
+//   the energies of `constraints` for their multipliers as they are
 struct Objective {
   const Model& model;
   const Field* dead_force = nullptr;  // [N]
@@ -31,13 +33,14 @@ struct Objective {
   double rate = 0.0;                  // [1/s]
   const Field* from = nullptr;        // [m]
   const Field* lag = nullptr;         // [m]
+  Constraints* constraints = nullptr;
 };
 
 // Its value [J]. state.half_velocity has to be zero here and below.
 double objective_value(const Objective& objective, const State& state, Workspace& workspace);
 
 // Minus its gradient on the free nodes, 0 on the others [N]. Leaves in workspace.force what the
-// model alone pulls all nodes with.
+// model and the constraints pull all nodes with.
 Field objective_force(const Objective& objective, const State& state, Workspace& workspace);
 
 // v . C v of dashpots and viscosity as at positions x, and drag [W], v of all nodes.
@@ -65,6 +68,7 @@ struct NewtonReport {
   int products = 0;       // Hessian products taken by the conjugate gradients
   double force = 0.0;     // |force| left [N]
   double residual = 0.0;  // as a share of what the body carries [-]
+  bool within = true;     // the constraints hold (minimise_within)
 };
 
 // Moves the free nodes of the state to the minimum near where they are.
@@ -74,6 +78,12 @@ struct NewtonReport {
 // pulls with at a strain of one.
 NewtonReport minimise(const Objective& objective, LinearSolver& linear,
                       const NewtonOptions& options, Workspace& workspace, State& state);
+
+// The same with the multipliers of objective.constraints found too: minimises for given
+// multipliers, makes the pushes found the new ones, and again until the conditions hold and the
+// forces rest.
+NewtonReport minimise_within(const Objective& objective, LinearSolver& linear,
+                             const NewtonOptions& options, Workspace& workspace, State& state);
 
 // --- sums over nodes, in an order that no thread count changes ---
 

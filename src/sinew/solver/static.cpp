@@ -69,17 +69,13 @@ std::vector<std::size_t> joined_bodies(const Model& model) {
   return group;
 }
 
-// A body that nothing holds rests only under forces that cancel each other.
-void refuse_unheld_bodies(const Model& model, const Field& force) {
+// The groups of joined bodies that no pin and no anchor holds (bodies; -1: held).
+std::vector<Index> unheld_groups(const Model& model) {
   const std::vector<std::size_t> group = joined_bodies(model);
   std::vector<char> held(group.size(), 0);
-  std::vector<Vec3> net(group.size(), Vec3::Zero());
-  std::vector<double> size(group.size(), 0.0);
   for (std::size_t b = 0; b < group.size(); ++b) {
     for (auto i = uz(model.bodies[b].nodes.begin); i < uz(model.bodies[b].nodes.end); ++i) {
       if (model.inverse_mass[i] == 0.0) held[group[b]] = 1;
-      net[group[b]] += force[i];
-      size[group[b]] += force[i].norm();
     }
   }
   for (auto s = uz(model.first_attachment); s < model.springs.size(); ++s) {
@@ -91,20 +87,77 @@ void refuse_unheld_bodies(const Model& model, const Field& force) {
       }
     }
   }
+  std::vector<Index> unheld(group.size(), -1);
   for (std::size_t b = 0; b < group.size(); ++b) {
-    const std::size_t g = group[b];
-    if (held[g] == 0 && net[g].norm() > 1e-6 * size[g]) {
+    if (held[group[b]] == 0) unheld[b] = static_cast<Index>(group[b]);
+  }
+  return unheld;
+}
+
+// A body that nothing holds rests only under forces that cancel each other, or that press it
+// straight against the ground.
+void refuse_unheld_bodies(const Model& model, const Field& force) {
+  const std::vector<Index> unheld = unheld_groups(model);
+  std::vector<Vec3> net(unheld.size(), Vec3::Zero());
+  std::vector<double> size(unheld.size(), 0.0);
+  for (std::size_t b = 0; b < unheld.size(); ++b) {
+    if (unheld[b] < 0) continue;
+    for (auto i = uz(model.bodies[b].nodes.begin); i < uz(model.bodies[b].nodes.end); ++i) {
+      net[uz(unheld[b])] += force[i];
+      size[uz(unheld[b])] += force[i].norm();
+    }
+  }
+  for (std::size_t b = 0; b < unheld.size(); ++b) {
+    if (unheld[b] < 0) continue;
+    const auto g = uz(unheld[b]);
+    Vec3 lacks = net[g];
+    if (model.ground)
+      lacks -= std::min(0.0, model.ground->normal.dot(lacks)) * model.ground->normal;
+    if (lacks.norm() > 1e-6 * size[g]) {
       throw Error(ErrorKind::input,
-                  fmt::format("body '{}' has no rest state: nothing holds it against {:.4g} N",
-                              model.bodies[b].name, net[g].norm()),
-                  "pin it, attach it, or take stepper = \"verlet\"");
+                  fmt::format("body '{}' has no rest state: nothing holds it against {:.4g} N{}",
+                              model.bodies[b].name, lacks.norm(),
+                              model.ground ? " (rest states know no friction)" : ""),
+                  "pin it, attach it, or take stepper = \"verlet\" or \"implicit\"");
     }
   }
 }
 
+// Puts bodies that only the ground holds down on it, or lifts them onto it.
+void put_on_ground(const Model& model, State& state) {
+  const std::vector<Index> unheld = unheld_groups(model);
+  std::vector<double> lowest(unheld.size(), no_limit);
+  const auto for_each = [&](const auto& f) {
+    for (std::size_t b = 0; b < unheld.size(); ++b) {
+      if (unheld[b] < 0) continue;
+      const Range nodes = model.bodies[b].nodes;
+      for (auto i = uz(nodes.begin); i < uz(nodes.end); ++i) {
+        f(lowest[uz(unheld[b])], state.position[i]);
+      }
+    }
+  };
+  const Vec3& n = model.ground->normal;
+  for_each([&](double& low, Vec3& x) { low = std::min(low, n.dot(x - model.ground->point)); });
+  for_each([&](double& low, Vec3& x) { x -= low * n; });
+}
+
+// What ties a body that only the ground holds to its place [1/s2]: see StaticSolver::settle. A
+// hundredth of the edge of a mean tet under the body's own weight.
+double nudge(const Model& model) {
+  if (!model.ground) return 0.0;
+  const std::vector<Index> unheld = unheld_groups(model);
+  if (std::all_of(unheld.begin(), unheld.end(), [](Index g) { return g < 0; })) return 0.0;
+  return 0.01 * model.gravity.norm() / mean_edge(model);
+}
+
 }  // namespace
 
-StaticSolver::StaticSolver(const Model& model) : model_(model), workspace_(model), linear_(model) {
+StaticSolver::StaticSolver(const Model& model)
+    : model_(model),
+      workspace_(model),
+      nudge_(nudge(model)),
+      linear_(model),
+      constraints_(model, 10.0 * model.gravity.norm() / mean_edge(model), 0.0, false) {
   double stiffest = 0.0;
   for (std::size_t t = 0; t < model.tets.size(); ++t) {
     double bulk = model.tet_bulk[t];
@@ -152,6 +205,37 @@ int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Ve
   return products;
 }
 
+// Minimises. Along the ground, and about its normal, nothing holds a body that rests on it: a weak
+// spring from every node to where it starts does, sigma m / 2 |x - x_start|^2, which moves along
+// until it carries nothing (the proximal point method, Rockafellar 1976).
+NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& options, State& state) {
+  constraints_.start(state, nullptr);
+  if (!constraints_.empty()) objective.constraints = &constraints_;
+  objective.inertia = nudge_;
+  const Field outer = outer_forces(model_, state);
+  const double goal = options.tolerance * std::sqrt(dot(outer, outer));
+  NewtonReport report;
+  for (;;) {
+    const Field start = state.position;
+    if (nudge_ > 0.0) objective.inertial = &start;
+    const NewtonReport once = minimise_within(objective, linear_, options, workspace_, state);
+    state.reactions = constraints_.reactions();
+    constraints_.start(state, nullptr);
+    const int newton = report.newton + once.newton;
+    const int products = report.products + once.products;
+    report = once;
+    report.newton = newton;
+    report.products = products;
+    const double pull = parallel_sum(model_.node_count(), [&](Index i) {
+      const double k = nudge_ * model_.mass[uz(i)];
+      return k * k * (state.position[uz(i)] - start[uz(i)]).squaredNorm();
+    });
+    if (!once.rests || once.stopped || std::sqrt(pull) <= goal) return report;
+    report.rests = newton < 10 * options.most;
+    if (!report.rests) return report;
+  }
+}
+
 StaticReport StaticSolver::solve(double time, const StaticOptions& options, State& state) {
   StaticReport report;
   const double start_time = state.time;
@@ -168,6 +252,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
     }
     compute_forces(model_, state, workspace_);
   }
+  if (nudge_ > 0.0) put_on_ground(model_, state);
 
   // The dead force makes the start of the solve a rest state, so that the way from there to the
   // goal can be cut into small steps.
@@ -204,11 +289,13 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
           options.on_progress({report.load_steps, next, before_this + p.newton, p.residual});
         };
       }
-      const NewtonReport r = minimise(objective, linear_, o, workspace_, state);
+      const NewtonReport r = settle(objective, o, state);
       report.newton += r.newton;
       report.products += r.products;
       report.force = r.force;
       report.residual = r.residual;
+      report.contacts = constraints_.contacts();
+      report.within = r.within;
       report.stopped = r.stopped && !r.rests;
       return r.rests || r.stopped;
     };

@@ -37,6 +37,8 @@ struct StaticReport {
   int load_steps = 0;
   int newton = 0;
   int products = 0;      // Hessian products taken by the conjugate gradients
+  Index contacts = 0;    // nodes that the ground pushes
+  bool within = true;    // the ground and the limits hold to their tolerances
   bool stopped = false;  // by options.stop; the state is then the best so far
 };
 
@@ -50,6 +52,10 @@ class StaticSolver {
   //
   // A start that is tangled (forces/righting.h) is no guess worth keeping: the body starts from its
   // rest shape, moved rigidly to where it is.
+  //
+  // The ground, without friction, and the limits hold in it (solver/constraints.h). A body that
+  // only the ground holds is put down on it first, straight along its normal, and then keeps its
+  // place along the ground as nearly as it can.
   //
   // Where Newton's method does not get through, pins and loads are brought on in smaller steps.
   // Throws Error(input) where a body has nothing to hold it against the forces on it, and
@@ -65,9 +71,13 @@ class StaticSolver {
   Workspace& workspace() { return workspace_; }
 
  private:
+  NewtonReport settle(Objective objective, const NewtonOptions& options, State& state);
+
   const Model& model_;
   Workspace workspace_;
+  double nudge_;  // see settle() [1/s2]; 0 where no body rests on the ground alone
   LinearSolver linear_;
+  Constraints constraints_;
   std::unique_ptr<Model> softened_;  // with less stiff volume, where that helps; else none
 };
 

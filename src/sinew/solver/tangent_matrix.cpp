@@ -79,6 +79,10 @@ Mat3 definite(const Mat3& m) {
 TangentMatrix::TangentMatrix(const Model& model) : model_(model) {
   free_.resize(model.rest_position.size());
   for (std::size_t i = 0; i < free_.size(); ++i) free_[i] = model.inverse_mass[i] > 0.0 ? 1 : 0;
+  limited_.assign(model.springs.size(), -1);
+  for (std::size_t k = 0; k < model.limited.size(); ++k) {
+    limited_[uz(model.limited[k])] = static_cast<Index>(k);
+  }
   find_edges();
   find_far_neighbours();
   if (model.has_volume) find_cells();
@@ -274,6 +278,11 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
       const auto s = uz(edge_springs_[k]);
       block +=
           spring_stiffness_block(x[uz(b)] - x[uz(a)], model.stiffness[s], model.rest_length[s]);
+      if (objective.constraints != nullptr && limited_[s] >= 0) {
+        const auto& limit = objective.constraints->spring_tangents()[uz(limited_[s])];
+        block += limit.across * Mat3::Identity() +
+                 (limit.along - limit.across) * limit.direction * limit.direction.transpose();
+      }
       const double c = objective.rate * model.damping[s];
       if (c > 0.0) block += dashpot_block((*objective.lag)[uz(b)] - (*objective.lag)[uz(a)], c);
     }
@@ -290,14 +299,18 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
   });
 }
 
-void TangentMatrix::assemble_cells(const Model& model, const Workspace& workspace) {
+void TangentMatrix::assemble_cells(const Objective& objective, const Workspace& workspace) {
+  const Model& model = objective.model;
+  const bool limited = objective.constraints != nullptr && model.has_volume_limit;
   parallel_for(model.tet_count(), [&](Index t) {
     for (std::size_t a = 0; a < 4; ++a) {
       tet_gradient_[4 * uz(t) + a] = Float4(workspace.tet_gradient[uz(t)][a]);
     }
   });
   parallel_for(model.cell_count(), [&](Index c) {
-    cell_stiffness_[uz(c)] = static_cast<float>(model.cell_bulk[uz(c)] / model.cell_volume[uz(c)]);
+    double stiffness = model.cell_bulk[uz(c)] / model.cell_volume[uz(c)];
+    if (limited) stiffness += objective.constraints->cell_stiffness()[uz(c)];
+    cell_stiffness_[uz(c)] = static_cast<float>(stiffness);
     for (auto k = uz(cell_start_[uz(c)]); k < uz(cell_start_[uz(c) + 1]); ++k) {
       Float4 sum;
       for (auto p = uz(part_start_[k]); p < uz(part_start_[k + 1]); ++p) {
@@ -318,6 +331,9 @@ void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
     const double weight = (objective.inertia + objective.rate * model.drag[n]) * model.mass[n];
     Mat3 own = weight * Mat3::Identity();
     add_obstacle_stiffness(model, x[n], workspace.obstacle_center, i, own);
+    if (objective.constraints != nullptr && n < objective.constraints->node_blocks().size()) {
+      own += objective.constraints->node_blocks()[n];
+    }
     own_block_[n] = Block3(own);
     own.diagonal().array() += static_cast<double>(far_sum_[n]);
     Block3 sum(own);
@@ -337,7 +353,7 @@ void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
 
 void TangentMatrix::assemble(const Objective& objective, const Field& x,
                              const Workspace& workspace) {
-  if (objective.model.has_volume) assemble_cells(objective.model, workspace);
+  if (objective.model.has_volume) assemble_cells(objective, workspace);
   assemble_edges(objective, x, workspace);
   assemble_nodes(objective, x, workspace);
 }

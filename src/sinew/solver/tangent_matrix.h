@@ -67,7 +67,7 @@ class TangentMatrix {
   Mat3 near_block(std::size_t entry) const;
   TangentRows rows() const;
   void assemble_edges(const Objective& objective, const Field& x, const Workspace& workspace);
-  void assemble_cells(const Model& model, const Workspace& workspace);
+  void assemble_cells(const Objective& objective, const Workspace& workspace);
   void assemble_nodes(const Objective& objective, const Field& x, const Workspace& workspace);
 
   const Model& model_;
@@ -78,11 +78,13 @@ class TangentMatrix {
   std::vector<std::array<Index, 2>> edge_entries_;  // of B_ab and B_ba (edges)
   std::vector<Index> edge_tet_start_;               // (edges + 1)
   std::vector<AroundEdge> edge_tets_;
-  std::vector<double> tet_stiffness_;                    // of tet_volume_stiffness [Pa] (tets)
+  std::vector<double> tet_stiffness_;      // of tet_volume_stiffness [Pa] (tets)
   std::vector<Index> edge_viscous_start_;  // (edges + 1), empty where nothing is viscous
   std::vector<ViscousPair> edge_viscous_;
-  std::vector<Mat3> viscous_deformation_;  // F of the cells at objective.lag [-]
+  std::vector<Mat3> viscous_deformation_;                // F of the cells at objective.lag [-]
   std::vector<Index> edge_spring_start_, edge_springs_;  // spring ids (edges + 1)
+
+  std::vector<Index> limited_;  // index into model.limited, -1: none (springs)
 
   // Rows of the nodes.
   std::vector<char> free_;                // 1 where the node moves (nodes)

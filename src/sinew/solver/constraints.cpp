@@ -1,0 +1,398 @@
+#include "sinew/solver/constraints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/network.h"
+#include "sinew/forces/volume.h"
+#include "sinew/solver/bound.h"
+
+namespace sinew {
+namespace {
+
+constexpr double ratio = 10.0;  // of a condition's stiffness and what its nodes resist with
+
+// Largest distance from a bound that is good enough: of a node below the ground, as a share of the
+// mean edge; of a cell's volume, as a share of it (a tenth of its limit where that is less).
+constexpr double ground_tolerance = 1e-4;
+constexpr double cell_tolerance = 1e-4;
+// Friction goes by normal forces that are right to this share.
+constexpr double grip_tolerance = 2e-3;
+
+// 1/D_i [m/N] (nodes), 0 where the motion is given: the diagonal of M inertia + C rate + K at rest.
+std::vector<double> node_compliance(const Model& model, double inertia, double rate) {
+  std::vector<double> d(model.rest_position.size(), 0.0);
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    d[i] = (inertia + rate * model.drag[i]) * model.mass[i];
+    if (model.network_start.empty()) continue;
+    for (Index k = model.network_start[i]; k < model.network_start[i + 1]; ++k) {
+      d[i] += model.network_stiffness[uz(k)];
+    }
+  }
+  for (std::size_t s = 0; s < model.springs.size(); ++s) {
+    for (const Index end : model.springs[s]) {
+      d[uz(end)] += model.stiffness[s] + rate * model.damping[s];
+    }
+  }
+  for (std::size_t t = 0; t < model.tets.size() && model.has_volume; ++t) {
+    double bulk = model.tet_bulk[t];
+    for (std::size_t a = 0; a < 4; ++a) {
+      const Index c = model.cells[t][a];
+      if (c >= 0) bulk += model.cell_share[t][a] * model.cell_bulk[uz(c)];
+    }
+    const auto g = shape_gradients(model.rest_position, model.tets[t]);
+    for (std::size_t a = 0; a < 4; ++a) {
+      d[uz(model.tets[t][a])] += bulk * model.rest_volume[t] * g[a].squaredNorm() / 3.0;
+    }
+  }
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    d[i] = model.inverse_mass[i] > 0.0 && d[i] > 0.0 ? 1.0 / d[i] : 0.0;
+  }
+  return d;
+}
+
+// sum_i |dV_c/dx_i|^2 / D_i of a cell at rest.
+double cell_compliance(const Model& model, std::size_t c, const std::vector<double>& compliance) {
+  double sum = 0.0;
+  for (auto k = uz(model.cell_start[c]); k < uz(model.cell_start[c + 1]); ++k) {
+    const auto t = uz(model.cell_tet[k]);
+    const auto g = shape_gradients(model.rest_position, model.tets[t]);
+    const double share = model.cell_weight[k] * model.rest_volume[t];
+    for (std::size_t a = 0; a < 4; ++a) {
+      sum += share * share * g[a].squaredNorm() * compliance[uz(model.tets[t][a])];
+    }
+  }
+  return sum;
+}
+
+struct Interval {
+  double low = 0.0;
+  double high = no_limit;
+};
+
+Interval spring_interval(const Model& model, std::size_t s) {
+  const double l0 = model.rest_length[s];
+  return {model.compress_limit[s] < no_limit ? (1.0 - model.compress_limit[s]) * l0 : 0.0,
+          (1.0 + model.stretch_limit[s]) * l0};
+}
+
+Interval cell_interval(const Model& model, std::size_t c) {
+  return {(1.0 - model.volume_limit[c]) * model.cell_volume[c],
+          (1.0 + model.volume_limit[c]) * model.cell_volume[c]};
+}
+
+// Volume of a cell from workspace.tet_volume [m3].
+double cell_volume(const Model& model, const Workspace& workspace, std::size_t c) {
+  double volume = 0.0;
+  for (auto k = uz(model.cell_start[c]); k < uz(model.cell_start[c + 1]); ++k) {
+    volume += model.cell_weight[k] * workspace.tet_volume[uz(model.cell_tet[k])];
+  }
+  return volume;
+}
+
+// Calls f(k) for every limited spring; two that run at once share no node.
+template <typename F>
+void for_each_limited(const Model& model, const F& f) {
+  for (std::size_t c = 0; c + 1 < model.colour_start.size(); ++c) {
+    const Index first = model.colour_start[c];
+    parallel_for(model.colour_start[c + 1] - first, [&](Index k) { f(uz(first + k)); });
+  }
+}
+
+template <typename F>
+double parallel_max(std::size_t n, const F& f) {
+  return parallel_reduce(
+      static_cast<Index>(n), 0.0,
+      [&](Range r) {
+        double largest = 0.0;
+        for (Index i = r.begin; i < r.end; ++i) largest = std::max(largest, f(uz(i)));
+        return largest;
+      },
+      [](double a, double b) { return std::max(a, b); });
+}
+
+}  // namespace
+
+double mean_edge(const Model& model) {
+  const auto mean = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  if (!model.tets.empty()) return std::cbrt(6.0 * std::sqrt(2.0) * mean(model.rest_volume));
+  return model.springs.empty() ? 0.0 : mean(model.rest_length);
+}
+
+Constraints::Constraints(const Model& model, double inertia, double rate, bool friction)
+    : model_(model), friction_(friction && model.ground && model.ground->friction > 0.0) {
+  if (!model.ground && model.limited.empty() && !model.has_volume_limit) return;
+  const std::vector<double> compliance = node_compliance(model, inertia, rate);
+  if (model.ground) {
+    // Single masses have no size but the way they fall in a step.
+    const double edge = mean_edge(model);
+    ground_tolerance_ = ground_tolerance * (edge > 0.0 ? edge : model.gravity.norm() / inertia);
+    ground_stiffness_.assign(uz(model.body_node_count()), 0.0);
+    for (std::size_t i = 0; i < ground_stiffness_.size(); ++i) {
+      if (compliance[i] > 0.0) ground_stiffness_[i] = ratio / compliance[i];
+    }
+  }
+  for (const Index s : model.limited) {
+    const Edge& ends = model.springs[uz(s)];
+    spring_stiffness_.push_back(ratio / (compliance[uz(ends[0])] + compliance[uz(ends[1])]));
+  }
+  if (model.has_volume_limit) {
+    cell_stiffness_.assign(model.cell_volume.size(), 0.0);
+    for (std::size_t c = 0; c < cell_stiffness_.size(); ++c) {
+      const double sum = cell_compliance(model, c, compliance);
+      if (model.volume_limit[c] < no_limit && sum > 0.0) cell_stiffness_[c] = ratio / sum;
+    }
+  }
+}
+
+bool Constraints::empty() const {
+  return ground_stiffness_.empty() && spring_stiffness_.empty() && cell_stiffness_.empty();
+}
+
+void Constraints::start(const State& state, const std::vector<Vec3>* from) {
+  from_ = from;
+  hardness_ = 1.0;
+  now_ = state.reactions;
+  if (now_.ground.size() != ground_stiffness_.size()) {
+    now_.ground.assign(ground_stiffness_.size(), Vec3::Zero());
+  }
+  if (now_.tension.size() != spring_stiffness_.size()) {
+    now_.tension.assign(spring_stiffness_.size(), 0.0);
+  }
+  if (now_.pressure.size() != cell_stiffness_.size()) {
+    now_.pressure.assign(cell_stiffness_.size(), 0.0);
+  }
+  grip_.assign(friction_ ? now_.ground.size() : 0, 0.0);
+  parallel_for(static_cast<Index>(grip_.size()), [&](Index i) {
+    grip_[uz(i)] = model_.ground->friction * model_.ground->normal.dot(now_.ground[uz(i)]);
+  });
+}
+
+double Constraints::height(const Vec3& x) const {
+  return model_.ground->normal.dot(x - model_.ground->point);
+}
+
+// Way along the ground since the start of the step.
+Vec3 Constraints::slip(std::size_t node, const Vec3& x) const {
+  const Vec3 way = x - (*from_)[node];
+  return way - model_.ground->normal.dot(way) * model_.ground->normal;
+}
+
+// Of the ground on a node at x [N].
+Vec3 Constraints::ground_push(std::size_t node, const Vec3& x) const {
+  const double k = hardness_ * ground_stiffness_[node];
+  if (k == 0.0) return Vec3::Zero();
+  const Vec3& n = model_.ground->normal;
+  const Vec3& before = now_.ground[node];
+  const double normal = n.dot(before);
+  Vec3 push = -bound_pull(height(x), 0.0, no_limit, k, -normal) * n;
+  if (friction_ && grip_[node] > 0.0) {
+    push -= friction_pull(slip(node, x), grip_[node], k, normal * n - before);
+  }
+  return push;
+}
+
+double Constraints::spring_pull(std::size_t k, double length) const {
+  const Interval range = spring_interval(model_, uz(model_.limited[k]));
+  return bound_pull(length, range.low, range.high, hardness_ * spring_stiffness_[k],
+                    now_.tension[k]);
+}
+
+double Constraints::cell_pull(std::size_t c, double volume) const {
+  if (cell_stiffness_[c] == 0.0) return 0.0;
+  const Interval range = cell_interval(model_, c);
+  return bound_pull(volume, range.low, range.high, hardness_ * cell_stiffness_[c],
+                    now_.pressure[c]);
+}
+
+double Constraints::value(const std::vector<Vec3>& x, const Workspace& workspace) const {
+  double energy = parallel_sum(static_cast<Index>(ground_stiffness_.size()), [&](Index i) {
+    const auto node = uz(i);
+    const double k = hardness_ * ground_stiffness_[node];
+    if (k == 0.0) return 0.0;
+    const Vec3& n = model_.ground->normal;
+    const double normal = n.dot(now_.ground[node]);
+    double e = bound_energy(height(x[node]), 0.0, no_limit, k, -normal);
+    if (friction_ && grip_[node] > 0.0) {
+      e += friction_energy(slip(node, x[node]), grip_[node], k, normal * n - now_.ground[node]);
+    }
+    return e;
+  });
+  energy += parallel_sum(static_cast<Index>(spring_stiffness_.size()), [&](Index i) {
+    const auto s = uz(model_.limited[uz(i)]);
+    const Interval range = spring_interval(model_, s);
+    const double length = (x[uz(model_.springs[s][1])] - x[uz(model_.springs[s][0])]).norm();
+    return bound_energy(length, range.low, range.high, hardness_ * spring_stiffness_[uz(i)],
+                        now_.tension[uz(i)]);
+  });
+  energy += parallel_sum(static_cast<Index>(cell_stiffness_.size()), [&](Index i) {
+    const auto c = uz(i);
+    if (cell_stiffness_[c] == 0.0) return 0.0;
+    const Interval range = cell_interval(model_, c);
+    return bound_energy(cell_volume(model_, workspace, c), range.low, range.high,
+                        hardness_ * cell_stiffness_[c], now_.pressure[c]);
+  });
+  return energy;
+}
+
+template <typename Ground, typename Spring, typename Cell>
+void Constraints::spread(const std::vector<Vec3>& x, const Ground& ground, const Spring& spring,
+                         const Cell& cell, Workspace& workspace, std::vector<Vec3>& force) const {
+  parallel_for(static_cast<Index>(ground_stiffness_.size()),
+               [&](Index i) { force[uz(i)] += ground(uz(i)); });
+  for_each_limited(model_, [&](std::size_t k) {
+    const auto [a, b] = model_.springs[uz(model_.limited[k])];
+    const Vec3 x_ij = x[uz(b)] - x[uz(a)];
+    const double length = x_ij.norm();
+    if (length == 0.0) return;
+    const Vec3 pull = (spring(k, length) / length) * x_ij;
+    force[uz(a)] += pull;
+    force[uz(b)] -= pull;
+  });
+  if (cell_stiffness_.empty()) return;
+  std::vector<double> pressure(cell_stiffness_.size());
+  parallel_for(model_.cell_count(), [&](Index c) { pressure[uz(c)] = cell(uz(c)); });
+  press_cells(model_, pressure, workspace);
+  parallel_for(model_.node_count(), [&](Index i) {
+    force[uz(i)] -= press_tets(model_, workspace, workspace.tet_pressure_change, i);
+  });
+}
+
+void Constraints::add_forces(const std::vector<Vec3>& x, Workspace& workspace,
+                             std::vector<Vec3>& force) const {
+  spread(
+      x, [&](std::size_t i) { return ground_push(i, x[i]); },
+      [&](std::size_t k, double length) { return spring_pull(k, length); },
+      [&](std::size_t c) { return cell_pull(c, cell_volume(model_, workspace, c)); }, workspace,
+      force);
+}
+
+void Constraints::add_reactions(const std::vector<Vec3>& x, Workspace& workspace,
+                                std::vector<Vec3>& force) const {
+  spread(
+      x, [&](std::size_t i) { return now_.ground[i]; },
+      [&](std::size_t k, double) { return now_.tension[k]; },
+      [&](std::size_t c) { return now_.pressure[c]; }, workspace, force);
+}
+
+void Constraints::linearise(const std::vector<Vec3>& x, Workspace& workspace) {
+  node_block_.assign(ground_stiffness_.size(), Mat3::Zero());
+  parallel_for(static_cast<Index>(node_block_.size()), [&](Index i) {
+    const auto node = uz(i);
+    const double k = hardness_ * ground_stiffness_[node];
+    if (k == 0.0) return;
+    const Vec3& n = model_.ground->normal;
+    const double normal = n.dot(now_.ground[node]);
+    const double along = bound_stiffness(height(x[node]), 0.0, no_limit, k, -normal);
+    node_block_[node] = along * n * n.transpose();
+    if (friction_ && grip_[node] > 0.0) {
+      node_block_[node] += friction_stiffness(slip(node, x[node]), grip_[node], k,
+                                              normal * n - now_.ground[node], n);
+    }
+  });
+  spring_tangent_.assign(spring_stiffness_.size(), {});
+  parallel_for(static_cast<Index>(spring_tangent_.size()), [&](Index i) {
+    const auto s = uz(model_.limited[uz(i)]);
+    const Vec3 x_ij = x[uz(model_.springs[s][1])] - x[uz(model_.springs[s][0])];
+    const double length = x_ij.norm();
+    const double pull = length > 0.0 ? spring_pull(uz(i), length) : 0.0;
+    if (pull == 0.0) return;
+    spring_tangent_[uz(i)] = {x_ij / length, hardness_ * spring_stiffness_[uz(i)], pull / length};
+  });
+  if (cell_stiffness_.empty()) return;
+  cell_tangent_.assign(cell_stiffness_.size(), 0.0);
+  std::vector<double> pressure(cell_stiffness_.size());
+  parallel_for(model_.cell_count(), [&](Index c) {
+    pressure[uz(c)] = cell_pull(uz(c), cell_volume(model_, workspace, uz(c)));
+    if (pressure[uz(c)] != 0.0) cell_tangent_[uz(c)] = hardness_ * cell_stiffness_[uz(c)];
+  });
+  press_cells(model_, pressure, workspace);
+  parallel_for(model_.tet_count(), [&](Index t) {
+    workspace.tet_pressure[uz(t)] += workspace.tet_pressure_change[uz(t)];
+  });
+}
+
+void Constraints::add_stiffness_times(const std::vector<Vec3>& u, Workspace& workspace,
+                                      std::vector<Vec3>& out) const {
+  parallel_for(static_cast<Index>(node_block_.size()),
+               [&](Index i) { out[uz(i)] += node_block_[uz(i)] * u[uz(i)]; });
+  for_each_limited(model_, [&](std::size_t k) {
+    const SpringTangent& tangent = spring_tangent_[k];
+    if (tangent.along == 0.0) return;
+    const auto [a, b] = model_.springs[uz(model_.limited[k])];
+    const Vec3 u_ij = u[uz(b)] - u[uz(a)];
+    const Vec3 along = tangent.direction.dot(u_ij) * tangent.direction;
+    const Vec3 change = tangent.along * along + tangent.across * (u_ij - along);
+    if (model_.inverse_mass[uz(a)] > 0.0) out[uz(a)] -= change;
+    if (model_.inverse_mass[uz(b)] > 0.0) out[uz(b)] += change;
+  });
+  if (std::all_of(cell_tangent_.begin(), cell_tangent_.end(), [](double k) { return k == 0.0; })) {
+    return;
+  }
+  std::vector<double> pressure(cell_tangent_.size());
+  rate_cells(model_, u, workspace, pressure);
+  for (std::size_t c = 0; c < pressure.size(); ++c) pressure[c] *= cell_tangent_[c];
+  press_cells(model_, pressure, workspace);
+  parallel_for(model_.node_count(), [&](Index i) {
+    if (model_.inverse_mass[uz(i)] == 0.0) return;
+    out[uz(i)] += press_tets(model_, workspace, workspace.tet_pressure_change, i);
+  });
+}
+
+ConstraintError Constraints::update(const std::vector<Vec3>& x, const Workspace& workspace) {
+  Reactions next = now_;
+  const double ground = parallel_max(next.ground.size(), [&](std::size_t i) {
+    if (ground_stiffness_[i] == 0.0) return 0.0;
+    next.ground[i] = ground_push(i, x[i]);
+    const double k = hardness_ * ground_stiffness_[i];
+    return (next.ground[i] - now_.ground[i]).norm() / (k * ground_tolerance_);
+  });
+  const double springs = parallel_max(next.tension.size(), [&](std::size_t i) {
+    const auto s = uz(model_.limited[i]);
+    const double length = (x[uz(model_.springs[s][1])] - x[uz(model_.springs[s][0])]).norm();
+    next.tension[i] = spring_pull(i, length);
+    const double k = hardness_ * spring_stiffness_[i];
+    return std::abs(next.tension[i] - now_.tension[i]) /
+           (k * model_.limit_tolerance * model_.rest_length[s]);
+  });
+  const double cells = parallel_max(next.pressure.size(), [&](std::size_t i) {
+    if (cell_stiffness_[i] == 0.0) return 0.0;
+    next.pressure[i] = cell_pull(i, cell_volume(model_, workspace, i));
+    const double k = hardness_ * cell_stiffness_[i];
+    const double tolerance = std::min(cell_tolerance, 0.1 * model_.volume_limit[i]);
+    return std::abs(next.pressure[i] - now_.pressure[i]) / (k * tolerance * model_.cell_volume[i]);
+  });
+  double grips = 0.0;
+  if (friction_) {
+    const auto count = static_cast<Index>(grip_.size());
+    const auto grip = [&](Index i) {
+      return model_.ground->friction * model_.ground->normal.dot(next.ground[uz(i)]);
+    };
+    const double change =
+        parallel_sum(count, [&](Index i) { return std::abs(grip(i) - grip_[uz(i)]); });
+    parallel_for(count, [&](Index i) { grip_[uz(i)] = grip(i); });
+    const double sum = parallel_sum(count, [&](Index i) { return grip_[uz(i)]; });
+    if (change > 0.0) grips = sum > 0.0 ? change / (grip_tolerance * sum) : no_limit;
+  }
+  now_ = std::move(next);
+  return {std::max({ground, springs, cells}), grips};
+}
+
+Index Constraints::contacts() const {
+  return static_cast<Index>(std::count_if(now_.ground.begin(), now_.ground.end(),
+                                          [](const Vec3& push) { return !push.isZero(0.0); }));
+}
+
+bool act(const Reactions& reactions) {
+  const auto pulls = [](double s) { return s != 0.0; };
+  return std::any_of(reactions.ground.begin(), reactions.ground.end(),
+                     [](const Vec3& push) { return !push.isZero(0.0); }) ||
+         std::any_of(reactions.tension.begin(), reactions.tension.end(), pulls) ||
+         std::any_of(reactions.pressure.begin(), reactions.pressure.end(), pulls);
+}
+
+}  // namespace sinew

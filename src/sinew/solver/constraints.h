@@ -1,0 +1,111 @@
+// The ground with friction, limits of springs and limits of volume as part of what implicit steps
+// and rest states minimise. docs/methods/constraints.md.
+#pragma once
+
+#include <vector>
+
+#include "sinew/forces/workspace.h"
+#include "sinew/model/state.h"
+
+namespace sinew {
+
+// How far conditions and friction are from where they have to be, over what is good enough: at most
+// 1 when they hold.
+struct ConstraintError {
+  double distance = 0.0;  // largest change of a push over k, a way past the bound
+  double grip = 0.0;      // change of the normal forces that friction goes by, of their sum
+};
+
+// Conditions on
+//   the height of each free node above the ground       n . (x - point) >= 0
+//   the length of each limited spring                   (1 - tau_c) l0 <= l <= (1 + tau_s) l0
+//   the volume of each limited cell                     |V - V_c| <= limit V_c
+// each as an energy of solver/bound.h, and friction on the nodes that the ground pushes. minimise()
+// finds the positions for given multipliers; update() makes the pushes found the new multipliers,
+// until they stay as they are (minimise_within).
+//
+// The stiffness k of a condition on q is ten times what its nodes resist with one by one,
+// 1 / sum_i (|dq/dx_i|^2 / D_i) with D_i the diagonal of M inertia + C rate + K: what bounds the
+// share of the error that is left by a pass, and keeps the tangent as well conditioned as it is.
+class Constraints {
+ public:
+  // inertia [1/s2] and rate [1/s] as in Objective. friction: whether the ground has any.
+  Constraints(const Model& model, double inertia, double rate, bool friction);
+
+  bool empty() const;
+
+  // Takes the multipliers from where the state's last step left them. `from`: where slips along the
+  // ground start [m] (nodes); kept, and may be null without friction.
+  void start(const State& state, const std::vector<Vec3>* from);
+
+  // --- the energy for the multipliers as they are; workspace.tet_volume, tet_gradient are at x ---
+
+  double value(const std::vector<Vec3>& x, const Workspace& workspace) const;  // [J]
+  // Adds the forces [N] to `force` (nodes).
+  void add_forces(const std::vector<Vec3>& x, Workspace& workspace, std::vector<Vec3>& force) const;
+
+  // Adds what the multipliers themselves push with along the directions at x (nodes).
+  void add_reactions(const std::vector<Vec3>& x, Workspace& workspace,
+                     std::vector<Vec3>& force) const;
+
+  // The second derivative at x, from here on below. What the pressure of a limited cell does by the
+  // curvature of its volume is left in workspace.tet_pressure, where the material's own is.
+  void linearise(const std::vector<Vec3>& x, Workspace& workspace);
+  // out += H u, rows of the free nodes.
+  void add_stiffness_times(const std::vector<Vec3>& u, Workspace& workspace,
+                           std::vector<Vec3>& out) const;
+
+  // What linearise() found: a symmetric block for every node [N/m] (nodes of bodies, empty without
+  // a ground); for every limited spring k n n^T + a (1 - n n^T) between its ends; for every cell
+  // k dV dV^T.
+  struct SpringTangent {
+    Vec3 direction = Vec3::Zero();  // n
+    double along = 0.0;             // k [N/m]
+    double across = 0.0;            // a [N/m]
+  };
+  const std::vector<Mat3>& node_blocks() const { return node_block_; }
+  const std::vector<SpringTangent>& spring_tangents() const { return spring_tangent_; }
+  const std::vector<double>& cell_stiffness() const { return cell_tangent_; }  // [N/m5]
+
+  // --- the multipliers ---
+
+  // Makes the pushes at x the multipliers; returns how far they were off.
+  ConstraintError update(const std::vector<Vec3>& x, const Workspace& workspace);
+  // Multiplies every k; start() takes that back.
+  void harden(double factor) { hardness_ *= factor; }
+
+  Index contacts() const;  // nodes that the ground pushes
+  const Reactions& reactions() const { return now_; }
+
+ private:
+  template <typename Ground, typename Spring, typename Cell>
+  void spread(const std::vector<Vec3>& x, const Ground& ground, const Spring& spring,
+              const Cell& cell, Workspace& workspace, std::vector<Vec3>& force) const;
+  double height(const Vec3& x) const;
+  Vec3 slip(std::size_t node, const Vec3& x) const;
+  Vec3 ground_push(std::size_t node, const Vec3& x) const;
+  double spring_pull(std::size_t k, double length) const;
+  double cell_pull(std::size_t c, double volume) const;
+
+  const Model& model_;
+  bool friction_;
+  const std::vector<Vec3>* from_ = nullptr;
+  double hardness_ = 1.0;
+  double ground_tolerance_ = 0.0;         // [m]
+  std::vector<double> ground_stiffness_;  // [N/m] (nodes of bodies; 0: no condition)
+  std::vector<double> spring_stiffness_;  // [N/m] (limited)
+  std::vector<double> cell_stiffness_;    // [N/m5] (cells; 0: no condition)
+  Reactions now_;
+  std::vector<double> grip_;  // mu times the normal force of the pass before [N] (nodes of bodies)
+  std::vector<Mat3> node_block_;
+  std::vector<SpringTangent> spring_tangent_;
+  std::vector<double> cell_tangent_;
+};
+
+// Edge of the regular tet of the mean volume [m]; without tets the mean length of the springs.
+double mean_edge(const Model& model);
+
+// Whether anything pushes.
+bool act(const Reactions& reactions);
+
+}  // namespace sinew

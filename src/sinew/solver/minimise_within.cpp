@@ -1,0 +1,47 @@
+// The outer loop of the augmented Lagrangian. docs/methods/constraints.md.
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/solver/newton.h"
+
+namespace sinew {
+namespace {
+
+constexpr int most_passes = 30;
+// How close the first pass has to come to rest, and every later one a tenth of that, while the
+// multipliers are still being found [-].
+constexpr double on_the_way = 1e-2;
+// A pass that leaves more than this share of the error calls for stiffer conditions.
+constexpr double slow = 0.5;
+constexpr double stiffer = 4.0;
+
+}  // namespace
+
+NewtonReport minimise_within(const Objective& objective, LinearSolver& linear,
+                             const NewtonOptions& options, Workspace& workspace, State& state) {
+  if (objective.constraints == nullptr) {
+    return minimise(objective, linear, options, workspace, state);
+  }
+  NewtonReport report;
+  report.within = false;
+  double distance = no_limit;  // of the pass before
+  for (int pass = 0; pass < most_passes; ++pass) {
+    NewtonOptions o = options;
+    if (!report.within) o.tolerance = std::max(o.tolerance, on_the_way * std::pow(0.1, pass));
+    const NewtonReport of_pass = minimise(objective, linear, o, workspace, state);
+    report.newton += of_pass.newton;
+    report.products += of_pass.products;
+    report.force = of_pass.force;
+    report.residual = of_pass.residual;
+    report.rests = of_pass.rests && o.tolerance == options.tolerance;
+    report.stopped = of_pass.stopped;
+    const ConstraintError error = objective.constraints->update(state.position, workspace);
+    report.within = error.distance <= 1.0 && error.grip <= 1.0;
+    if (!of_pass.rests || of_pass.stopped || (report.rests && report.within)) return report;
+    if (error.distance > std::max(1.0, slow * distance)) objective.constraints->harden(stiffer);
+    distance = error.distance;
+  }
+  return report;
+}
+
+}  // namespace sinew
