@@ -61,10 +61,13 @@ ImplicitStepper::ImplicitStepper(const Model& model) : model_(model), workspace_
 bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
                             const ImplicitOptions& options, State& state, ImplicitReport& report) {
   const double inertia = 1.0 / (h * h);
-  if (!preconditioner_ || std::abs(inertia_ - inertia) > 1e-9 * inertia) {
-    preconditioner_ = std::make_unique<ScalarPreconditioner>(model_, inertia, 1.0 / h);
-    constraints_ = std::make_unique<Constraints>(model_, inertia, 1.0 / h, true);
-    inertia_ = inertia;
+  // Frames end at round times, and the last digits of h differ from frame to frame: rounded, so
+  // that what is kept from step to step is what a resumed run makes anew.
+  const double about = static_cast<double>(static_cast<float>(inertia));
+  if (!preconditioner_ || inertia_ != about) {
+    preconditioner_ = std::make_unique<ScalarPreconditioner>(model_, about, std::sqrt(about));
+    constraints_ = std::make_unique<Constraints>(model_, about, std::sqrt(about), true);
+    inertia_ = about;
   }
   constraints_->start(state, &from);
   const Field lag = state.position;
