@@ -135,13 +135,14 @@ duration = 0.2
 [output]
 checkpoint = 0
 [ground]
+point = [0, -0.06, 0]
 normal = [0.1, 1, 0]
 restitution = 0.1
 [body.box]
 shape = "box"
 cells = [2, 2, 2]
 size = [0.1, 0.1, 0.1]
-center = [0, 0.06, 0]
+center = true
 young = 2e4
 stretch_limit = 0.1
 volume_limit = 0.01

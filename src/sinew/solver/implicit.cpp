@@ -69,9 +69,12 @@ void ImplicitStepper::prepare(double h, const ImplicitOptions& options) {
 bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
                             const ImplicitOptions& options, State& state, ImplicitReport& report) {
   const double inertia = 1.0 / (h * h);
-  if (std::abs(constrained_inertia_ - inertia) > 1e-9 * inertia) {
-    constraints_ = std::make_unique<Constraints>(model_, inertia, 1.0 / h, true);
-    constrained_inertia_ = inertia;
+  // Frames end at round times, and the last digits of h differ from frame to frame: rounded, so
+  // that what is kept from step to step is what a resumed run makes anew.
+  const double about = static_cast<double>(static_cast<float>(inertia));
+  if (constrained_inertia_ != about) {
+    constraints_ = std::make_unique<Constraints>(model_, about, std::sqrt(about), true);
+    constrained_inertia_ = about;
   }
   constraints_->start(state, &from);
   const Field lag = state.position;

@@ -21,16 +21,20 @@ void LinearSolver::factor(const Objective& objective, Workspace& workspace) {
   Objective rest = objective;
   rest.lag = &rest_position;
   rest.constraints = nullptr;
+  // The last digits of a step differ from frame to frame: rounded, so that what is kept from step
+  // to step is what a resumed run makes anew.
+  rest.inertia = static_cast<double>(static_cast<float>(objective.inertia));
+  if (rest.inertia > 0.0 && objective.rate > 0.0) rest.rate = std::sqrt(rest.inertia);
   prepare_stiffness(objective.model, rest_position, workspace);
   matrix_.assemble(rest, rest_position, workspace);
   preconditioner_.factor(matrix_);
   factored_model_ = &objective.model;
-  factored_inertia_ = objective.inertia;
+  factored_inertia_ = static_cast<float>(objective.inertia);
 }
 
 bool LinearSolver::is_factored(const Objective& objective) const {
   return factored_model_ == &objective.model &&
-         std::abs(factored_inertia_ - objective.inertia) <= 1e-6 * objective.inertia;
+         factored_inertia_ == static_cast<float>(objective.inertia);
 }
 
 void LinearSolver::assemble(const Objective& objective, const Field& x, Workspace& workspace) {

@@ -34,7 +34,7 @@ class LinearSolver {
   TangentMatrix matrix_;
   TwoLevel preconditioner_;
   const Model* factored_model_ = nullptr;  // what preconditioner_ was factored for
-  double factored_inertia_ = -1.0;
+  float factored_inertia_ = -1.0f;
   Field4 r_, z_, d_, q_, p_;  // residual, P^-1 r, direction, K d, solution
 };
 
