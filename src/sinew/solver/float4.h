@@ -16,6 +16,7 @@ struct Float4 {
 
   Float4() = default;
   explicit Float4(Lanes l) : lanes(l) {}
+  Float4(float x, float y, float z) : lanes{x, y, z, 0.0f} {}
   explicit Float4(const Vec3& v)
       : lanes{static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
               0.0f} {}

@@ -84,19 +84,27 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
       model_,  nullptr,   0.0,
       inertia, &inertial, 1.0 / h,
       &from,   &lag,      constraints_->empty() ? nullptr : constraints_.get()};
-  // From where it stands, or on as it moves: what costs less.
+  const NewtonOptions newton_options{
+      options.tolerance, options.max_newton, nullptr, {}, options.deadline};
   move_pins(model_, state);
-  const double standing = objective_value(objective, state, workspace_);
   const Field stand = state.position;
+  const double standing = options.deadline ? objective_value(objective, state, workspace_) : 0.0;
+  // On as it moves; with a deadline only where that costs less than to stand still.
   state.position = inertial;
   move_pins(model_, state);
-  if (!(objective_value(objective, state, workspace_) < standing)) state.position = stand;
-
-  const NewtonReport newton = minimise_within(
-      objective, linear_, {options.tolerance, options.max_newton, nullptr, {}, options.deadline},
-      workspace_, state);
+  if (options.deadline && !(objective_value(objective, state, workspace_) < standing)) {
+    state.position = stand;
+  }
+  NewtonReport newton = minimise_within(objective, linear_, newton_options, workspace_, state);
   report.newton += newton.newton;
   report.products += newton.products;
+  if (!newton.rests && !options.deadline) {  // a start that flew too far: from where it stands
+    state.position = stand;
+    constraints_->start(state, &from);
+    newton = minimise_within(objective, linear_, newton_options, workspace_, state);
+    report.newton += newton.newton;
+    report.products += newton.products;
+  }
   report.residual = std::max(report.residual, newton.residual);
   report.ran_out = report.ran_out || newton.ran_out;
   report.contacts = constraints_->contacts();

@@ -262,7 +262,7 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
     if (report.rests || report.stopped || report.newton == options.most) return report;
     report.ran_out = report.newton > 0 && passed(deadline);
     if (report.ran_out) return report;
-    const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.1);
+    const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.3);
     linear.assemble(objective, state.position, workspace);
     report.products += linear.solve(f, forcing, most_products, deadline, p);
     ++report.newton;

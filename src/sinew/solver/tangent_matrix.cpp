@@ -20,12 +20,6 @@ struct Pair {
 constexpr std::array<Pair, 6> tet_pairs = {
     {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
 
-Mat3 cross_matrix(const Vec3& w) {
-  Mat3 m;
-  m << 0.0, -w.z(), w.y(), w.z(), 0.0, -w.x(), -w.y(), w.x(), 0.0;
-  return m;
-}
-
 // items[start[k] .. start[k + 1]) = the i in [0, count) with key(i) = k, in increasing order; those
 // with a negative key are left out.
 template <typename Key>
@@ -79,6 +73,7 @@ Mat3 definite(const Mat3& m) {
 TangentMatrix::TangentMatrix(const Model& model) : model_(model) {
   free_.resize(model.rest_position.size());
   for (std::size_t i = 0; i < free_.size(); ++i) free_[i] = model.inverse_mass[i] > 0.0 ? 1 : 0;
+  for (const double k : model.stiffness) springs_pull_ = springs_pull_ || k > 0.0;
   limited_.assign(model.springs.size(), -1);
   for (std::size_t k = 0; k < model.limited.size(); ++k) {
     limited_[uz(model.limited[k])] = static_cast<Index>(k);
@@ -86,6 +81,7 @@ TangentMatrix::TangentMatrix(const Model& model) : model_(model) {
   find_edges();
   find_far_neighbours();
   if (model.has_volume) find_cells();
+  position_.resize(free_.size());
   own_block_.resize(free_.size());
   inverse_diagonal_.resize(free_.size());
 }
@@ -215,12 +211,12 @@ void TangentMatrix::find_cells() {
       parts_.push_back(parts[p].second);
       if (p + 1 < parts.size() && parts[p + 1].first == parts[p].first) continue;
       cell_node_.push_back(parts[p].first);
-      entry_cell_.push_back(c);
       part_start_.push_back(static_cast<Index>(parts_.size()));
     }
     cell_start_.push_back(static_cast<Index>(cell_node_.size()));
   }
   tet_stiffness_.resize(model_.tets.size());
+  tet_push_.resize(model_.tets.size());
   tet_gradient_.resize(4 * model_.tets.size());
   gradient_.resize(cell_node_.size());
   cell_stiffness_.resize(model_.cell_volume.size());
@@ -228,12 +224,14 @@ void TangentMatrix::find_cells() {
   sort_by_key(
       free_.size(), static_cast<Index>(cell_node_.size()),
       [&](Index k) { return cell_node_[uz(k)]; }, node_start_, node_entry_);
-}
-
-void TangentMatrix::set_near_block(Index entry, const Mat3& block) {
-  for (std::size_t c = 0; c < 3; ++c) {
-    near_block_[near_column(uz(entry), c)] = Float4(Vec3(block.col(static_cast<int>(c))));
+  std::vector<Index> cell_of(cell_node_.size());
+  for (std::size_t c = 0; c < cell_stiffness_.size(); ++c) {
+    for (auto k = uz(cell_start_[c]); k < uz(cell_start_[c + 1]); ++k) {
+      cell_of[k] = static_cast<Index>(c);
+    }
   }
+  for (const Index entry : node_entry_) node_cell_.push_back(cell_of[uz(entry)]);
+  node_gradient_.resize(node_entry_.size());
 }
 
 Mat3 TangentMatrix::near_block(std::size_t entry) const {
@@ -250,53 +248,82 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
   const Model& model = objective.model;
   parallel_for(static_cast<Index>(tet_stiffness_.size()), [&](Index t) {
     tet_stiffness_[uz(t)] = tet_volume_stiffness(model, workspace, uz(t));
+    tet_push_[uz(t)] = static_cast<float>(workspace.tet_pressure[uz(t)] / 6.0);
   });
   const bool viscous = !edge_viscous_.empty() && objective.rate > 0.0;
   parallel_for(viscous ? model.viscous_cell_count() : 0, [&](Index cell) {
     viscous_deformation_[uz(cell)] = viscous_deformation(model, *objective.lag, cell);
   });
+  const bool springs = objective.rate > 0.0 || objective.constraints != nullptr || springs_pull_;
+  parallel_for(model.node_count(),
+               [&](Index i) { position_[uz(i)] = Float4(Vec3(x[uz(i)] - x[0])); });
   parallel_for(static_cast<Index>(edges_.size()), [&](Index i) {
     const auto e = uz(i);
-    const auto [a, b] = edges_[e];
-    Vec3 turn = Vec3::Zero();  // sum of s_t (x_d - x_c) / 6
-    Mat3 block = edge_network_[e] * Mat3::Identity();
+    Float4 turn;  // sum of s_t (x_d - x_c) / 6
+    bool rare = viscous || (springs && edge_spring_start_[e] < edge_spring_start_[e + 1]);
     for (auto k = uz(edge_tet_start_[e]); model.has_volume && k < uz(edge_tet_start_[e + 1]); ++k) {
       const AroundEdge& around = edge_tets_[k];
-      const auto t = uz(around.tet);
-      turn += workspace.tet_pressure[t] * (x[uz(around.d)] - x[uz(around.c)]);
-      const double stiffness = tet_stiffness_[t];
-      if (stiffness == 0.0) continue;
-      const Tet& tet = model.tets[t];
-      const auto corner = [&](Index node) {
-        return static_cast<std::size_t>(std::find(tet.begin(), tet.end(), node) - tet.begin());
-      };
-      block -= stiffness / model.rest_volume[t] * workspace.tet_gradient[t][corner(a)] *
-               workspace.tet_gradient[t][corner(b)].transpose();
+      turn += tet_push_[uz(around.tet)] * (position_[uz(around.d)] - position_[uz(around.c)]);
+      rare = rare || tet_stiffness_[uz(around.tet)] > 0.0;
     }
-    block += cross_matrix(turn / 6.0);
-    for (auto k = uz(edge_spring_start_[e]); k < uz(edge_spring_start_[e + 1]); ++k) {
-      const auto s = uz(edge_springs_[k]);
-      block +=
-          spring_stiffness_block(x[uz(b)] - x[uz(a)], model.stiffness[s], model.rest_length[s]);
-      if (objective.constraints != nullptr && limited_[s] >= 0) {
-        const auto& limit = objective.constraints->spring_tangents()[uz(limited_[s])];
-        block += limit.across * Mat3::Identity() +
-                 (limit.along - limit.across) * limit.direction * limit.direction.transpose();
+    const auto k = static_cast<float>(edge_network_[e]);
+    const float u = turn.lanes[0];
+    const float v = turn.lanes[1];
+    const float w = turn.lanes[2];
+    std::array<Block3, 2> pair;  // B_ab and B_ba: k 1 + [turn]_x and its transpose
+    pair[0].column = {Float4(k, w, -v), Float4(-w, k, u), Float4(v, -u, k)};
+    pair[1].column = {Float4(k, -w, v), Float4(w, k, -u), Float4(-v, u, k)};
+    if (rare) {
+      const Mat3 more = rare_block(objective, x, workspace, e);
+      for (int c = 0; c < 3; ++c) {
+        pair[0].column[static_cast<std::size_t>(c)] += Float4(Vec3(more.col(c)));
+        pair[1].column[static_cast<std::size_t>(c)] += Float4(Vec3(more.row(c)));
       }
-      const double c = objective.rate * model.damping[s];
-      if (c > 0.0) block += dashpot_block((*objective.lag)[uz(b)] - (*objective.lag)[uz(a)], c);
     }
-    for (auto k = uz(viscous ? edge_viscous_start_[e] : 0);
-         viscous && k < uz(edge_viscous_start_[e + 1]); ++k) {
-      const ViscousPair& pair = edge_viscous_[k];
-      block -= objective.rate * viscous_block(viscous_deformation_[uz(pair.cell)],
-                                              model.viscous_gradient[uz(pair.a)],
-                                              model.viscous_gradient[uz(pair.b)],
-                                              model.viscous_weight[uz(pair.cell)]);
+    for (std::size_t end = 0; end < 2; ++end) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        near_block_[near_column(uz(edge_entries_[e][end]), c)] = pair[end].column[c];
+      }
     }
-    set_near_block(edge_entries_[e][0], block);
-    set_near_block(edge_entries_[e][1], block.transpose());
   });
+}
+
+// What not every edge has in B_ab: tets that keep their own volume or turn over, springs, dashpots,
+// limits and viscosity.
+Mat3 TangentMatrix::rare_block(const Objective& objective, const Field& x,
+                               const Workspace& workspace, std::size_t e) const {
+  const Model& model = objective.model;
+  const auto [a, b] = edges_[e];
+  Mat3 block = Mat3::Zero();
+  for (auto k = uz(edge_tet_start_[e]); model.has_volume && k < uz(edge_tet_start_[e + 1]); ++k) {
+    const auto t = uz(edge_tets_[k].tet);
+    if (tet_stiffness_[t] == 0.0) continue;
+    const Tet& tet = model.tets[t];
+    const auto corner = [&](Index node) {
+      return static_cast<std::size_t>(std::find(tet.begin(), tet.end(), node) - tet.begin());
+    };
+    block -= tet_stiffness_[t] / model.rest_volume[t] * workspace.tet_gradient[t][corner(a)] *
+             workspace.tet_gradient[t][corner(b)].transpose();
+  }
+  for (auto k = uz(edge_spring_start_[e]); k < uz(edge_spring_start_[e + 1]); ++k) {
+    const auto s = uz(edge_springs_[k]);
+    block += spring_stiffness_block(x[uz(b)] - x[uz(a)], model.stiffness[s], model.rest_length[s]);
+    if (objective.constraints != nullptr && limited_[s] >= 0) {
+      const auto& limit = objective.constraints->spring_tangents()[uz(limited_[s])];
+      block += limit.across * Mat3::Identity() +
+               (limit.along - limit.across) * limit.direction * limit.direction.transpose();
+    }
+    const double c = objective.rate * model.damping[s];
+    if (c > 0.0) block += dashpot_block((*objective.lag)[uz(b)] - (*objective.lag)[uz(a)], c);
+  }
+  if (edge_viscous_.empty() || objective.rate == 0.0) return block;
+  for (auto k = uz(edge_viscous_start_[e]); k < uz(edge_viscous_start_[e + 1]); ++k) {
+    const ViscousPair& pair = edge_viscous_[k];
+    block -= objective.rate *
+             viscous_block(viscous_deformation_[uz(pair.cell)], model.viscous_gradient[uz(pair.a)],
+                           model.viscous_gradient[uz(pair.b)], model.viscous_weight[uz(pair.cell)]);
+  }
+  return block;
 }
 
 void TangentMatrix::assemble_cells(const Objective& objective, const Workspace& workspace) {
@@ -342,9 +369,9 @@ void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
     }
     for (auto k = uz(model.has_volume ? node_start_[n] : 0);
          model.has_volume && k < uz(node_start_[n + 1]); ++k) {
-      const auto entry = uz(node_entry_[k]);
-      const Float4 g = gradient_[entry];
-      const Float4 pushed = cell_stiffness_[uz(entry_cell_[entry])] * g;
+      const Float4 g = gradient_[uz(node_entry_[k])];
+      node_gradient_[k] = g;
+      const Float4 pushed = cell_stiffness_[uz(node_cell_[k])] * g;
       for (std::size_t c = 0; c < 3; ++c) sum.column[c] += pushed.lanes[c] * g;
     }
     inverse_diagonal_[n] = Block3(Mat3(definite(sum.mat3()).inverse()));
@@ -372,8 +399,8 @@ TangentRows TangentMatrix::rows() const {
           gradient_.data(),
           cell_stiffness_.data(),
           node_start_.empty() ? nullptr : node_start_.data(),
-          node_entry_.data(),
-          entry_cell_.data()};
+          node_cell_.data(),
+          node_gradient_.data()};
 }
 
 double TangentMatrix::times(const Field4& u, Field4& out) const {

@@ -63,10 +63,11 @@ class TangentMatrix {
   void find_edges();
   void find_far_neighbours();
   void find_cells();
-  void set_near_block(Index entry, const Mat3& block);
   Mat3 near_block(std::size_t entry) const;
   TangentRows rows() const;
   void assemble_edges(const Objective& objective, const Field& x, const Workspace& workspace);
+  Mat3 rare_block(const Objective& objective, const Field& x, const Workspace& workspace,
+                  std::size_t edge) const;
   void assemble_cells(const Objective& objective, const Workspace& workspace);
   void assemble_nodes(const Objective& objective, const Field& x, const Workspace& workspace);
 
@@ -78,12 +79,15 @@ class TangentMatrix {
   std::vector<std::array<Index, 2>> edge_entries_;  // of B_ab and B_ba (edges)
   std::vector<Index> edge_tet_start_;               // (edges + 1)
   std::vector<AroundEdge> edge_tets_;
+  Field4 position_;                        // x, about one of the nodes [m] (nodes)
+  std::vector<float> tet_push_;            // s_t / 6 [Pa] (tets)
   std::vector<double> tet_stiffness_;      // of tet_volume_stiffness [Pa] (tets)
   std::vector<Index> edge_viscous_start_;  // (edges + 1), empty where nothing is viscous
   std::vector<ViscousPair> edge_viscous_;
   std::vector<Mat3> viscous_deformation_;                // F of the cells at objective.lag [-]
   std::vector<Index> edge_spring_start_, edge_springs_;  // spring ids (edges + 1)
 
+  bool springs_pull_ = false;   // some spring has a stiffness
   std::vector<Index> limited_;  // index into model.limited, -1: none (springs)
 
   // Rows of the nodes.
@@ -104,7 +108,8 @@ class TangentMatrix {
   std::vector<Float4> gradient_;                // G_ci [m2] (as cell_node_)
   std::vector<float> cell_stiffness_;           // kappa_c / V_c [Pa/m3] (cells)
   std::vector<Index> node_start_, node_entry_;  // entries of cell_node_ (nodes + 1)
-  std::vector<Index> entry_cell_;               // (as cell_node_)
+  std::vector<Index> node_cell_;                // the cells of each node (as node_entry_)
+  std::vector<Float4> node_gradient_;           // their G_ci [m2] (as node_entry_)
   mutable std::vector<float> cell_push_;        // kappa_c / V_c G_c . u (cells)
 };
 

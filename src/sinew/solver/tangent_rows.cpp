@@ -69,9 +69,8 @@ SINEW_INLINE double nodes_loop(const TangentRows& m, const Float4* u, const floa
     sum += (m.own[n] * u[n]).lanes;
     if (m.node_start != nullptr) {
       for (auto k = uz(m.node_start[n]); k < uz(m.node_start[n + 1]); ++k) {
-        const auto entry = uz(m.node_entry[k]);
-        const float p = push[uz(m.entry_cell[entry])];
-        sum += F4{p, p, p, p} * m.gradient[entry].lanes;
+        const float p = push[uz(m.node_cell[k])];
+        sum += F4{p, p, p, p} * m.node_gradient[k].lanes;
       }
     }
     out[n].lanes = sum;

@@ -21,9 +21,9 @@ struct TangentRows {
   const Index* cell_node;
   const Float4* gradient;  // G_ci (as cell_node)
   const float* cell_stiffness;
-  const Index* node_start;  // entries of cell_node by node (nodes + 1); null: no cells
-  const Index* node_entry;
-  const Index* entry_cell;
+  const Index* node_start;  // (nodes + 1); null: no cells
+  const Index* node_cell;
+  const Float4* node_gradient;  // G_ci (as node_cell)
 };
 
 // Two entries lie side by side, so that their columns load at once.
