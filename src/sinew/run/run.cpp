@@ -146,7 +146,7 @@ class Runner {
                : status == RunStatus::interrupted ? "interrupted"
                                                   : "diverged";
     s.warnings = warnings_;
-    if (run.unstable_watches > 0 && !scene_.allow_unstable) {
+    if (scene_.dt && run.step_reductions > 0) {
       s.warnings.push_back(
           fmt::format("the given step {:.4g} s was above the stable one ({:.4g} s at the least) as "
                       "the body deformed, and was divided {} times; take dt = \"auto\"",
