@@ -10,7 +10,7 @@
 
 namespace sinew {
 
-// What an implicit step is made of costs, in steps of Verlet on the same model. Measured with
+// What the parts of an implicit step cost, in steps of Verlet on the same model. Measured with
 // sinew_bench (ImplicitStep); counted work times these decides, and not the clock, so that a scene
 // takes the same stepper on every machine.
 inline constexpr double product_cost = 1.0;  // a Hessian product and what preconditions it

@@ -68,7 +68,9 @@ class Runner {
     const double wall_before = run.wall_seconds;
     const double sim_before = run.state.time;
     Stepping stepping(scene_, model_, run);
-    if (options_.on_stepper && !run.stepper_reason.empty()) options_.on_stepper(run.stepper_reason);
+    if (options_.on_stepper && !run.stepper_reason.empty()) {
+      options_.on_stepper(run.stepper, run.stepper_reason);
+    }
     std::optional<Recorder> recorder;
     if (!options_.out.empty()) {
       prepare_folder_once(run);
