@@ -28,9 +28,9 @@ gravity = [0, 0, 0]
 shape = "box"
 size = [0.1, 0.1, 0.1]
 cells = [4, 4, 4]
-law = "lloyd"
 young = 2e4
-damping_ratio = 0.1
+damping_ratio = 0
+drag = 5
 [pin.left]
 select = { side = "-x" }
 [pin.right]
@@ -47,6 +47,7 @@ TEST(Adaptive, TheStepGrowsAgainWhenTheBodySoftens) {
   EXPECT_GT(s.step_reductions, 0);
   EXPECT_GT(s.step_increases, 0);
   EXPECT_GT(s.dt, 1.2 * s.stable_step);  // the last step is far above the shortest stable one
+  EXPECT_EQ(s.righting_steps, 0);
 }
 
 // A given step that is stable at rest and not when stretched is divided, and comes back.
@@ -64,11 +65,15 @@ TEST(Adaptive, AGivenStepIsDividedWhileItIsTooLong) {
 }
 
 TEST(Adaptive, AJerkToTwiceTheLengthStaysFinite) {
-  const char* jerk = "[{ time = 0.005, move = [0.1, 0, 0] }]";
-  for (const char* law : {"lloyd", "neo-hookean"}) {
-    const Summary s = run_of(pulled(jerk), {std::string("bar.law=") + law});
-    EXPECT_LT(s.peak_stretch, 5.0) << law;
-    EXPECT_LT(s.energy.kinetic, 1.0) << law;
+  for (const char* jerk : {"[{ time = 0.005, move = [0.1, 0, 0] }]",
+                           "[{ time = 0.3 }, { time = 0.305, move = [0.1, 0, 0] }]",
+                           "[{ time = 0.3 }, { time = 0.4, move = [0.1, 0, 0] }]"}) {
+    for (const char* law : {"lloyd", "neo-hookean"}) {
+      const Summary s =
+          run_of(pulled(jerk), {std::string("bar.law=") + law, "bar.damping_ratio=0.1"});
+      EXPECT_LT(s.peak_stretch, 5.0) << law << jerk;
+      EXPECT_LT(s.energy.kinetic, 1.0) << law << jerk;
+    }
   }
 }
 
@@ -77,15 +82,16 @@ TEST(Adaptive, ABodyPressedFlatStaysFinite) {
       "[{ time = 0.02, move = [-0.099, 0, 0] }, { time = 0.2, move = [-0.099, 0, 0] }, "
       "{ time = 0.25 }]";
   for (const char* law : {"lloyd", "neo-hookean"}) {
-    const Summary s = run_of(pulled(press), {std::string("bar.law=") + law});
+    const Summary s =
+        run_of(pulled(press), {std::string("bar.law=") + law, "bar.damping_ratio=0.1"});
     EXPECT_LT(s.energy.kinetic, 1.0) << law;
   }
 }
 
 TEST(Adaptive, TheMostInvertedTetsOfAnyFrameAreCounted) {
   const Summary s = run_of(pulled("[{ time = 0.6 }]"),
-                           {"bar.law=neo-hookean", "bar.start=inverted", "bar.poisson=0.3"});
-  EXPECT_GT(s.peak_inverted_tets, 300);  // frame 0
+                           {"bar.start=inverted", "bar.poisson=0.3", "bar.damping_ratio=0.1"});
+  EXPECT_GT(s.peak_inverted_tets, 150);  // frame 0
   EXPECT_EQ(s.inverted_tets, 0);
   EXPECT_GT(s.righting_steps, 0);
 }

@@ -126,7 +126,7 @@ TEST_F(Auto, ResumeGoesOnWithTheSameStepper) {
     ASSERT_EQ(run_scene(scene_of(cantilever, {young}), options).status, RunStatus::interrupted);
     std::string said;
     RunOptions listen;
-    listen.on_stepper = [&](const std::string& reason) { said = reason; };
+    listen.on_stepper = [&](const std::string&, const std::string& reason) { said = reason; };
     const RunResult rest = resume_run(folder_, listen);
     EXPECT_EQ(rest.summary.stepper, whole.stepper);
     EXPECT_EQ(rest.summary.stepper_reason, whole.stepper_reason);

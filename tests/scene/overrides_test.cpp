@@ -113,7 +113,8 @@ TEST(Overrides, NameTheirMistakes) {
             "  remedy: items count from 0");
   EXPECT_EQ(error("stepper=verlett"),
             "--set stepper=verlett: 'stepper' in the scene is \"verlett\"; expected one of "
-            "\"verlet\", \"implicit\", \"static\", \"auto\"; did you mean 'verlet'?\n  remedy: the default "
+            "\"verlet\", \"implicit\", \"static\", \"auto\"; did you mean 'verlet'?\n  remedy: the "
+            "default "
             "is stepper = "
             "\"verlet\"");
 }

@@ -34,6 +34,7 @@ void visit(Archive& a, Run& r) {
   a.value(r.frame);
   a.value(r.steps_left);
   a.value(r.steps_to_watch);
+  a.value(r.watch_interval);
   a.value(r.step);
   a.value(r.target_step);
   a.value(r.stable_step);
@@ -42,7 +43,6 @@ void visit(Archive& a, Run& r) {
   a.value(r.step_reductions);
   a.value(r.step_increases);
   a.value(r.step_cuts);
-  a.value(r.unstable_watches);
   a.value(r.limit_sweeps);
   a.value(r.unmet_limits);
   a.value(r.righting_steps);

@@ -54,16 +54,16 @@ std::optional<Trial> try_implicit(const Contest& contest, const ImplicitOptions&
 Choice choose_stepper(const Scene& scene, const Model& model, const State& start,
                       const Contest& contest, const ImplicitOptions& options,
                       ImplicitStepper& stepper) {
-  if (scene.budget_ms) return {"implicit", "implicit: only it keeps to budget_ms"};
+  if (scene.budget_ms) return {"implicit", "only implicit steps keep to budget_ms"};
   if (contest.projection != nullptr) {
-    return {"verlet", fmt::format("verlet: implicit steps do not know {}", contest.projection)};
+    return {"verlet", fmt::format("implicit steps do not know {}", contest.projection)};
   }
   if (starts_tangled(model, start, stepper.workspace())) {
-    return {"verlet", "verlet: only it leads a body back that starts inside out"};
+    return {"verlet", "only verlet leads a body back that starts inside out"};
   }
-  if (!std::isfinite(contest.stable_step)) return {"verlet", "verlet: nothing can move"};
+  if (!std::isfinite(contest.stable_step)) return {"verlet", "nothing can move"};
   if (scene.dt && contest.verlet_step > contest.stable_step) {
-    return {"implicit", fmt::format("implicit: the given step {:.3g} s is above the stable one, "
+    return {"implicit", fmt::format("the given step {:.3g} s is above the stable one, "
                                     "{:.3g} s",
                                     contest.verlet_step, contest.stable_step)};
   }

@@ -10,11 +10,11 @@
 
 namespace sinew {
 
-// What an implicit step is made of costs, in steps of Verlet on the same model. Measured with
+// What the parts of an implicit step cost, in steps of Verlet on the same model. Measured with
 // sinew_bench (ImplicitStep); counted work times these decides, and not the clock, so that a scene
 // takes the same stepper on every machine.
-inline constexpr double product_cost = 3.0;  // a Hessian product and what preconditions it
-inline constexpr double newton_cost = 6.0;   // the rest of a Newton step: forces, line search
+inline constexpr double product_cost = 1.0;  // a Hessian product and what preconditions it
+inline constexpr double newton_cost = 17.0;  // the rest of a Newton step: forces, line search
 
 struct Choice {
   std::string stepper;  // verlet, implicit

@@ -68,7 +68,9 @@ class Runner {
     const double wall_before = run.wall_seconds;
     const double sim_before = run.state.time;
     Stepping stepping(scene_, model_, run);
-    if (options_.on_stepper && !run.stepper_reason.empty()) options_.on_stepper(run.stepper_reason);
+    if (options_.on_stepper && !run.stepper_reason.empty()) {
+      options_.on_stepper(run.stepper, run.stepper_reason);
+    }
     std::optional<Recorder> recorder;
     if (!options_.out.empty()) {
       prepare_folder_once(run);
@@ -146,7 +148,7 @@ class Runner {
                : status == RunStatus::interrupted ? "interrupted"
                                                   : "diverged";
     s.warnings = warnings_;
-    if (run.unstable_watches > 0 && !scene_.allow_unstable) {
+    if (scene_.dt && run.step_reductions > 0) {
       s.warnings.push_back(
           fmt::format("the given step {:.4g} s was above the stable one ({:.4g} s at the least) as "
                       "the body deformed, and was divided {} times; take dt = \"auto\"",

@@ -28,8 +28,8 @@ struct RunOptions {
   bool force = false;                                // an earlier run in `out` may be replaced
   const std::atomic<bool>* stop = nullptr;           // set it to end after the step under way
   std::function<void(const Progress&)> on_progress;  // called after every frame
-  // stepper = "auto": called before the first step with RunState::stepper_reason.
-  std::function<void(const std::string&)> on_stepper;
+  // stepper = "auto": called before the first step with RunState::stepper and its reason.
+  std::function<void(const std::string&, const std::string&)> on_stepper;
 };
 
 enum class RunStatus { finished, interrupted, diverged };

@@ -13,8 +13,12 @@
 namespace sinew {
 namespace {
 
-// Steps between two looks at the stable step; a look costs about as much as two steps.
-constexpr std::int64_t watch_interval = 48;
+// Steps between two looks at the stable step; a look costs about as much as two steps. As long as
+// the body is calm they grow, from the first to the last; a body that stiffens or is moved calls
+// for the first again.
+constexpr std::int64_t first_watch = 6;
+constexpr std::int64_t last_watch = 48;
+constexpr double calm = 0.97;  // of the stable step is left since the last look, or more
 
 // What dt = "auto" takes at most with the implicit stepper [s]: stable at any length, but a step
 // shows nothing of swings that are faster.
@@ -52,6 +56,24 @@ const char* only_verlet_knows(const Model& model) {
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+// Whether the path goes on anywhere between the times `from` and `to`.
+bool moves(const Path& path, double from, double to) {
+  KeyFrame last;
+  for (const KeyFrame& key : path.keys) {
+    const bool differs =
+        key.move != last.move || key.turn != last.turn || key.deform != last.deform;
+    if (differs && key.time > from && last.time < to) return true;
+    last = key;
+  }
+  return false;
+}
+
+bool is_moved(const Model& model, double from, double to) {
+  const auto goes_on = [&](const auto& thing) { return moves(thing.path, from, to); };
+  return std::any_of(model.pins.begin(), model.pins.end(), goes_on) ||
+         std::any_of(model.obstacles.begin(), model.obstacles.end(), goes_on);
 }
 
 // Rest states differ from frame to frame only where pins, loads or obstacles change with time.
@@ -116,7 +138,7 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
   run.stable_step = stable.step;
   run.smallest_stable_step = stable.step;
   run.stiff_mode = std::move(stable.mode);
-  run.steps_to_watch = watch_interval;
+  run.steps_to_watch = run.watch_interval = first_watch;
   run.target_step = verlet_step_at(stable.step);
   if (!automatic_ && run.target_step > stable.step && !allow_unstable_) {
     refuse(scene, model, stable);
@@ -186,12 +208,17 @@ bool Stepping::too_long(const RunState& run, double stable, double slack) const 
 }
 
 void Stepping::watch(RunState& run) {
-  run.steps_to_watch = watch_interval;
+  run.steps_to_watch = run.watch_interval;
   if (run.stiff_mode.empty()) return;
+  const double before = run.stable_step;
   run.stable_step =
       watch_stable_step(model_, run.state.position, run.step, run.stiff_mode, workspace_);
   run.smallest_stable_step = std::min(run.smallest_stable_step, run.stable_step);
-  if (!automatic_ && run.step > run.stable_step) ++run.unstable_watches;
+  const double time = run.state.time;
+  const bool stirred = run.stable_step < calm * before ||
+                       is_moved(model_, time, time + static_cast<double>(last_watch) * run.step);
+  run.watch_interval = stirred ? first_watch : std::min(2 * run.watch_interval, last_watch);
+  run.steps_to_watch = run.watch_interval;
   const double longest = automatic_ ? interval_ : given_;
   const double wish = std::min(safety_ * run.stable_step, longest);
   if (too_long(run, run.stable_step, 1.03)) {

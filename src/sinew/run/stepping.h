@@ -37,6 +37,7 @@ struct RunState {
   std::int64_t frame = 0;       // frames finished; frame 0 is the start
   std::int64_t steps_left = 0;  // steps to the end of the frame under way
   std::int64_t steps_to_watch = 0;    // steps until the stable step is looked at again
+  std::int64_t watch_interval = 0;    // steps from the last look to that one
   double step = 0.0;                  // h now taken [s]
   double target_step = 0.0;           // the longest h that may be taken [s]
   double stable_step = 0.0;           // h_c when last looked at [s]
@@ -45,7 +46,6 @@ struct RunState {
   std::int64_t step_reductions = 0;   // times that the step was made shorter during the run
   std::int64_t step_increases = 0;    // times that it was made longer again
   std::int64_t step_cuts = 0;         // times that an implicit step was cut in half
-  std::int64_t unstable_watches = 0;  // times that a given dt was found above the stable step
   std::int64_t limit_sweeps = 0;      // sweeps over limited springs in all
   std::int64_t unmet_limits = 0;      // steps that ended with a limit violated
   std::int64_t righting_steps = 0;    // steps in which a tangled body was led back
