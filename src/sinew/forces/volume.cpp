@@ -246,33 +246,6 @@ void compute_volume_force_change(const Model& model, std::span<const Vec3> x, do
   });
 }
 
-void relax_volume(const Model& model, std::span<const Vec3> u, Workspace& workspace) {
-  compute_tet_rates(model, u, workspace);
-  // Pressure that the change of volume calls up, with the shear stiffness of the surroundings in
-  // series: 1 / (1/kappa + 3/mu) instead of kappa.
-  const auto series = [](double kappa, double mu) {
-    return kappa > 0.0 ? kappa * mu / (3.0 * kappa + mu) : 0.0;
-  };
-  parallel_for(model.cell_count(), [&](Index i) {
-    const auto c = uz(i);
-    double rate = 0.0;
-    double shear = 0.0;
-    for (Index k = model.cell_start[c]; k < model.cell_start[c + 1]; ++k) {
-      const auto t = uz(model.cell_tet[uz(k)]);
-      rate += model.cell_weight[uz(k)] * workspace.tet_rate[t];
-      shear += model.cell_weight[uz(k)] * model.rest_volume[t] * model.tet_modulus[t];
-    }
-    const double volume = model.cell_volume[c];
-    workspace.cell_rate[c] = series(model.cell_bulk[c], shear / volume) * rate / volume;
-  });
-  parallel_for(model.tet_count(), [&](Index i) {
-    const auto t = uz(i);
-    workspace.tet_pressure_change[t] = mean_of_cells(model, t, workspace.cell_rate) +
-                                       series(model.tet_bulk[t], model.tet_modulus[t]) *
-                                           workspace.tet_rate[t] / model.rest_volume[t];
-  });
-}
-
 namespace {
 
 // Sum over the cell's tets of its share of what `of_tet` holds.

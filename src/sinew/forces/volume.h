@@ -61,12 +61,6 @@ double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& wor
 void compute_volume_force_change(const Model& model, std::span<const Vec3> x, double a,
                                  std::span<const Vec3> u, Workspace& workspace);
 
-// Fills workspace.tet_pressure_change with D B u, so that press_tets gives B^T D B u: B u the
-// change of the volumes, D their stiffness with the shear stiffness of the surroundings in series.
-// What a preconditioner needs to see a nearly incompressible material as it is (solver/static.h).
-// Expects workspace.tet_gradient.
-void relax_volume(const Model& model, std::span<const Vec3> u, Workspace& workspace);
-
 // --- the pieces of a projection on the cells' volumes (volume_limit.h) ---
 
 // volume = current volume of every cell [m3] (cells). Leaves workspace.tet_gradient for the others.

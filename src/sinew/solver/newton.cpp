@@ -114,17 +114,17 @@ double carried(const Objective& objective, double material, const State& state,
 }
 
 // Moves along p, the whole way where the force along p is then a fraction of what it was, which
-// costs no more than the force there (`f` becomes it); else so that the energy falls: halves the
-// step until it does. Close to rest, where the
-// change drowns in rounding, the force along p has to shrink instead. Returns false if nothing did.
-bool line_search(const Objective& objective, const Field& p, Workspace& workspace, Field& f,
-                 State& state) {
+// costs no more than the force there (`f` becomes it). Else, and always where `strict`, so that the
+// energy falls: halves the step until it does. Close to rest, where the change drowns in rounding,
+// the force along p has to shrink instead. Returns false if nothing did.
+bool line_search(const Objective& objective, const Field& p, bool strict, Workspace& workspace,
+                 Field& f, State& state) {
   const Model& model = objective.model;
   const double slope = dot(f, p);
   const Field start = state.position;
   add(state.position, 1.0, p);
   Field after = objective_force(objective, state, workspace);
-  if (std::abs(dot(after, p)) <= 0.5 * slope && dot(after, after) <= 4.0 * dot(f, f)) {
+  if (!strict && std::abs(dot(after, p)) <= 0.5 * slope && dot(after, after) <= 4.0 * dot(f, f)) {
     f = std::move(after);
     return true;
   }
@@ -266,7 +266,8 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
     linear.assemble(objective, state.position, workspace);
     report.products += linear.solve(f, forcing, most_products, deadline, p);
     ++report.newton;
-    if (!line_search(objective, p, workspace, f, state)) return report;
+    if (!line_search(objective, p, options.deadline.has_value(), workspace, f, state))
+      return report;
   }
 }
 

@@ -1,0 +1,195 @@
+#include "sinew/solver/linear_solver.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "sinew/forces/assemble.h"
+#include "sinew/forces/stiffness.h"
+#include "sinew/forces/terms.h"
+#include "sinew/mesh/shapes.h"
+#include "sinew/solver/block_cholesky.h"
+#include "support/models.h"
+
+namespace sinew {
+namespace {
+
+Field noise(const Model& m, double size, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-size, size);
+  Field u(m.rest_position.size(), Vec3::Zero());
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    if (m.inverse_mass[i] > 0.0) u[i] = Vec3(uniform(random), uniform(random), uniform(random));
+  }
+  return u;
+}
+
+Model clamped_bar(Index k, const Material& material) {
+  Model m;
+  BodySpec body;
+  body.name = "bar";
+  body.mesh = beam(Vec3(0.1, 0.1, 0.4), {k, k, 4 * k});
+  body.materials = {material};
+  body.regions = {"all"};
+  add_body(m, body);
+  Pin clamp;
+  for (Index i = 0; i < m.node_count(); ++i) {
+    if (m.rest_position[uz(i)].z() < 1e-9) clamp.nodes.push_back(i);
+  }
+  m.pins.push_back(clamp);
+  finish(m);
+  return m;
+}
+
+// The assembled matrix against the matrix-free product, at a deformed state of a bar.
+double difference(const Model& m, double inertia, double rate) {
+  Workspace workspace(m);
+  State s = initial_state(m);
+  const Field jitter = noise(m, 2e-3, 1);
+  for (std::size_t i = 0; i < jitter.size(); ++i) s.position[i] += jitter[i];
+  const Field lag = m.rest_position;
+  Objective objective{.model = m, .inertia = inertia, .rate = rate, .from = &lag, .lag = &lag};
+  compute_forces(m, s, workspace);
+  TangentMatrix matrix(m);
+  matrix.assemble(objective, s.position, workspace);
+
+  const Field u = noise(m, 1.0, 2);
+  Field plain(u.size()), damped(u.size());
+  stiffness_damping_times(m, s.position, 1.0, 0.0, u, Tangent::full, workspace, plain);
+  stiffness_damping_times(m, lag, 0.0, 1.0, u, Tangent::full, workspace, damped);
+  Field4 u4(u.size()), fast(u.size());
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    plain[i] += rate * damped[i];
+    if (m.inverse_mass[i] > 0.0) plain[i] += inertia * m.mass[i] * u[i];
+    u4[i] = Float4(u[i]);
+  }
+  matrix.times(u4, fast);
+  double error = 0.0, size = 0.0;
+  for (std::size_t i = 0; i < u.size(); ++i) {
+    error += (fast[i].vec3() - plain[i]).squaredNorm();
+    size += plain[i].squaredNorm();
+  }
+  return std::sqrt(error / size);
+}
+
+TEST(TangentMatrix, IsTheProductOfTheTerms) {
+  Material network;
+  EXPECT_LT(difference(clamped_bar(2, network), 0.0, 0.0), 1e-6);
+  EXPECT_LT(difference(clamped_bar(2, network), 3600.0, 60.0), 1e-6);
+  network.poisson = 0.499;
+  EXPECT_LT(difference(clamped_bar(2, network), 0.0, 0.0), 1e-6);
+  network.beta = 1.0;
+  network.volume = Volume::tet;
+  EXPECT_LT(difference(clamped_bar(2, network), 0.0, 0.0), 1e-6);
+  Material lloyd;
+  lloyd.law = Law::lloyd;
+  EXPECT_LT(difference(clamped_bar(2, lloyd), 3600.0, 60.0), 1e-6);
+  Material calibrated;
+  calibrated.law = Law::calibrated;
+  EXPECT_LT(difference(clamped_bar(2, calibrated), 3600.0, 60.0), 1e-6);
+  Material viscous;
+  viscous.viscosity = 100.0;
+  EXPECT_LT(difference(clamped_bar(2, viscous), 3600.0, 60.0), 1e-6);
+}
+
+// Iterations on the tangent at rest, for gravity, to 1e-3.
+int iterations(Index k, double young, double poisson, double inertia) {
+  Material material;
+  material.young = young;
+  material.poisson = poisson;
+  const Model m = clamped_bar(k, material);
+  Workspace workspace(m);
+  const State s = initial_state(m);
+  compute_forces(m, s, workspace);
+  LinearSolver linear(m);
+  Objective objective{.model = m, .inertia = inertia, .rate = 0.0, .lag = &m.rest_position};
+  linear.assemble(objective, s.position, workspace);
+  Field p;
+  return linear.solve(outer_forces(m, s), 1e-3, 1000, {}, p);
+}
+
+TEST(TwoLevel, IterationsHardlyDependOnTheMesh) {
+  const int coarse = iterations(4, 1.5e6, 0.45, 0.0);
+  RecordProperty("W4", coarse);
+  EXPECT_LE(iterations(8, 1.5e6, 0.45, 0.0), 1.5 * coarse);
+}
+
+TEST(TwoLevel, IterationsStayBoundedWithStiffness) {
+  const double inertia = 3600.0;
+  const int soft = iterations(4, 1e3, 0.45, inertia);
+  const int stiff = iterations(4, 1e9, 0.45, inertia);
+  EXPECT_EQ(stiff, iterations(4, 1e8, 0.45, inertia));
+  RecordProperty("soft", soft);
+  EXPECT_LE(stiff, iterations(4, 1e9, 0.45, 0.0) + 1);
+}
+
+TEST(LinearSolver, GivesTheSolutionToItsForcing) {
+  Material material;
+  const Model m = clamped_bar(2, material);
+  Workspace workspace(m);
+  const State s = initial_state(m);
+  compute_forces(m, s, workspace);
+  LinearSolver linear(m);
+  linear.assemble(Objective{m}, s.position, workspace);
+  const Field f = outer_forces(m, s);
+  Field p;
+  linear.solve(f, 1e-4, 1000, {}, p);
+  Field back(p.size());
+  stiffness_damping_times(m, s.position, 1.0, 0.0, p, Tangent::full, workspace, back);
+  add(back, -1.0, f);
+  EXPECT_LT(std::sqrt(dot(back, back)), 2e-4 * std::sqrt(dot(f, f)));
+}
+
+TEST(LinearSolver, ABodyThatNothingHoldsIsSolvedUpToItsMotion) {
+  Material material;
+  Model m = test::tissue_box(material, {3, 3, 3});
+  finish(m);
+  Workspace workspace(m);
+  const State s = initial_state(m);
+  compute_forces(m, s, workspace);
+  LinearSolver linear(m);
+  linear.assemble(Objective{m}, s.position, workspace);
+  // Forces that cancel: what the tangent makes of a displacement.
+  Field f(m.rest_position.size());
+  stiffness_damping_times(m, s.position, 1.0, 0.0, noise(m, 1.0, 3), Tangent::full, workspace, f);
+  Field p, back(f.size());
+  linear.solve(f, 1e-3, 1000, {}, p);
+  stiffness_damping_times(m, s.position, 1.0, 0.0, p, Tangent::full, workspace, back);
+  add(back, -1.0, f);
+  EXPECT_LT(std::sqrt(dot(back, back)), 2e-3 * std::sqrt(dot(f, f)));
+}
+
+TEST(BlockCholesky, SolvesASparseSystemWithFillIn) {
+  const int blocks = 5;
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(blocks * coarse_size, blocks * coarse_size);
+  std::vector<std::map<Index, CoarseBlock>> column(blocks);
+  for (int j = 0; j < blocks; ++j) {
+    for (const int i : {j, j + 1, j + 3}) {
+      if (i >= blocks) continue;
+      CoarseBlock b = CoarseBlock::NullaryExpr([&] { return uniform(random); });
+      if (i == j) b = CoarseBlock(0.5 * (b + b.transpose())) + 60.0 * CoarseBlock::Identity();
+      column[static_cast<std::size_t>(j)][i] = b;
+      a.block<coarse_size, coarse_size>(i * coarse_size, j * coarse_size) = b;
+      a.block<coarse_size, coarse_size>(j * coarse_size, i * coarse_size) = b.transpose();
+    }
+  }
+  std::vector<CoarseVector> x(blocks);
+  Eigen::VectorXd b(blocks * coarse_size);
+  for (int i = 0; i < blocks; ++i) {
+    x[static_cast<std::size_t>(i)] =
+        CoarseVector::NullaryExpr([&] { return static_cast<float>(uniform(random)); });
+    b.segment<coarse_size>(i * coarse_size) = x[static_cast<std::size_t>(i)].cast<double>();
+  }
+  BlockCholesky(column).solve(x);
+  Eigen::VectorXd solution(blocks * coarse_size);
+  for (int i = 0; i < blocks; ++i) {
+    solution.segment<coarse_size>(i * coarse_size) = x[static_cast<std::size_t>(i)].cast<double>();
+  }
+  EXPECT_LT((a * solution - b).norm(), 1e-5 * b.norm());
+}
+
+}  // namespace
+}  // namespace sinew
