@@ -81,36 +81,41 @@ def tips(summary, what):
 
 
 def compare(implicit, rest, omega):
-    """What a row says of two summaries."""
-    bad = [s["status"] for s in (implicit, rest) if s["status"] != "finished"]
-    if bad:
-        return {"status": bad[0], "difference": math.inf}
-    way = math.hypot(*tips(rest, "displacement"))
-    off = math.dist(tips(implicit, "position"), tips(rest, "position"))
-    speed = math.sqrt(2 * implicit["energy"]["kinetic"] / implicit["bodies"][0]["mass"])
+    """What a row says of two summaries; its difference is infinite where one of them has no end."""
+    row = {"status": "finished", "difference": math.inf}
+    if rest["status"] != "finished":
+        row["status"] = rest["status"]
+    if implicit["status"] != "finished":
+        return {**row, "status": implicit["status"]}
     steps, work = implicit["steps"], implicit["static"]
-    return {"status": "finished", "difference": float(off / way),
-            "still_moves": speed / (omega * way),
-            "tip": tips(implicit, "position"),
-            "static_tip": tips(rest, "position"),
-            "steps": steps, "newton_steps": work["newton_steps"] / steps,
-            "products": work["products"] / steps, "residual": work["residual"],
-            "step_cuts": implicit["step_cuts"], "inverted_tets": implicit["inverted_tets"],
-            "static_newton_steps": rest["static"]["newton_steps"],
-            "static_products": rest["static"]["products"]}
+    row.update(tip=tips(implicit, "position"), steps=steps, residual=work["residual"],
+               newton_steps=work["newton_steps"] / steps, products=work["products"] / steps,
+               step_cuts=implicit["step_cuts"], inverted_tets=implicit["inverted_tets"])
+    if rest["status"] != "finished":
+        return row
+    way = math.hypot(*tips(rest, "displacement"))
+    speed = math.sqrt(2 * implicit["energy"]["kinetic"] / implicit["bodies"][0]["mass"])
+    row.update(static_tip=tips(rest, "position"), still_moves=speed / (omega * way),
+               difference=math.dist(row["tip"], tips(rest, "position")) / way,
+               static_newton_steps=rest["static"]["newton_steps"],
+               static_products=rest["static"]["products"])
+    return row
 
 
 def print_row(row):
-    head = (f"{row['body']} k {row['k']} E {row['young']:.0e} nu {row['poisson']:<5} "
-            f"dt 1/{1 / row['dt']:<4.0f}")
-    if row["status"] != "finished":
-        print(f"{head}  {row['status']}  MISS", flush=True)
-        return
-    tip, static_tip = (" ".join(f"{x:.6g}" for x in row[key]) for key in ("tip", "static_tip"))
-    print(f"{head}  tip ({tip})  static ({static_tip})  off {100 * row['difference']:.2g} %, moves "
-          f"{100 * row['still_moves']:.1g} %  {row['steps']} steps of {row['newton_steps']:.1f} "
-          f"Newton steps, {row['products']:.0f} products, cuts {row['step_cuts']}  "
-          f"{row['wall']:.1f} s{'' if good(row) else '  MISS'}", flush=True)
+    def place(key):
+        return "(" + " ".join(f"{x:.6g}" for x in row[key]) + ")"
+    print(f"{row['body']} k {row['k']} E {row['young']:.0e} nu {row['poisson']:<5} "
+          f"dt 1/{1 / row['dt']:<4.0f}", end="  ")
+    if "tip" in row:
+        print(f"tip {place('tip')}  {row['steps']} steps of {row['newton_steps']:.1f} Newton "
+              f"steps, {row['products']:.0f} products, cuts {row['step_cuts']}", end="  ")
+    if "static_tip" in row:
+        print(f"static {place('static_tip')}  off {100 * row['difference']:.2g} %, still moves "
+              f"{100 * row['still_moves']:.1g} %", end="  ")
+    else:
+        print(row["status"], end="  ")
+    print(f"{row['wall']:.1f} s{'' if good(row) else '  MISS'}", flush=True)
 
 
 def good(row):
@@ -125,7 +130,7 @@ def table(rows):
     for row in rows:
         groups.setdefault((row["body"], row["k"], row["young"]), []).append(row)
     for (body, k, young), group in groups.items():
-        done = [r for r in group if r["status"] == "finished"] or [{}]
+        done = [r for r in group if "tip" in r] or [{}]
 
         def span(key, digits):
             values = [r.get(key, math.nan) for r in done]
