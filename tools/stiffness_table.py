@@ -106,7 +106,7 @@ def print_row(row):
     def place(key):
         return "(" + " ".join(f"{x:.6g}" for x in row[key]) + ")"
     print(f"{row['body']} k {row['k']} E {row['young']:.0e} nu {row['poisson']:<5} "
-          f"dt 1/{1 / row['dt']:<4.0f}", end="  ")
+          f"dt {str(Fraction(row['dt']).limit_denominator(10**6)):<6}", end="  ")
     if "tip" in row:
         print(f"tip {place('tip')}  {row['steps']} steps of {row['newton_steps']:.1f} Newton "
               f"steps, {row['products']:.0f} products, cuts {row['step_cuts']}", end="  ")
@@ -170,7 +170,7 @@ def main():
                 for dt in a.dt:
                     stem = f"{name}-{k}-{young:.0e}-{poisson}"
                     files = {"static": folder / f"{stem}-static.toml",
-                             "implicit": folder / f"{stem}-{1 / dt:.0f}.toml"}
+                             "implicit": folder / f"{stem}-{dt:.4f}.toml"}
                     for stepper, file in files.items():
                         file.write_text(scene(name, stepper, k, young, poisson, dt, mesh),
                                         encoding="utf-8")
