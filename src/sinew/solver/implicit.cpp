@@ -188,11 +188,13 @@ ImplicitReport ImplicitStepper::advance(double h, const ImplicitOptions& options
   int done = 0;
   for (int cuts = 0; done < parts;) {
     const State before = state;
+    const double residual = report.residual;
     if (try_step(length, options, state, report)) {
       ++done;
       continue;
     }
-    state = before;  // report keeps what the attempt took
+    state = before;  // report keeps what the attempt took, but no step left its residual
+    report.residual = residual;
     if (++cuts > most_cuts) {
       throw Error(
           ErrorKind::diverged,
