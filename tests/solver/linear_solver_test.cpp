@@ -10,7 +10,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/solver/block_cholesky.h"
-#include "support/models.h"
+#include "tests/support/models.h"
 
 namespace sinew {
 namespace {
