@@ -45,6 +45,9 @@ class StiffnessTest(CliTest):
                          "--poisson", "0.45")
         self.assertIn("bone-layer k 4 E 1e+09", out)
 
+    def test_bone_that_hangs_on_fat(self):
+        self.table("--body", "bone-end", "--young", "1e9", "--poisson", "0.3")
+
     def test_slivers(self):
         out = self.table("--body", "slivers", "--young", "1e3", "1e6", "1e9", "--poisson", "0.45")
         self.assertIn("1536 tets, 64 of at most 0.001 of the mean volume; smallest 0.001,", out)

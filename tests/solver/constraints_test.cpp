@@ -258,7 +258,7 @@ TEST(Constraints, ThePlasticImpactOfAMassIsAllDissipated) {
   ImplicitStepper stepper(m);
   for (int i = 0; i < 60; ++i) stepper.step(0.005, {}, s);
   EXPECT_NEAR(s.position[0].y(), -0.5, 1e-6);
-  EXPECT_NEAR(s.half_velocity[0].norm(), 0.0, 1e-6);
+  EXPECT_LT(s.half_velocity[0].norm(), 1e-4 * 10.0 * 0.005);  // ground_tolerance / h
   // 9 J of motion and 10 J of height; backward Euler keeps part of the impact to itself.
   EXPECT_NEAR(s.energy.dissipated, 19.0, 0.5);
 }

@@ -150,4 +150,17 @@ void lead_tangled_bodies(const Model& model, double h, const Workspace& workspac
   }
 }
 
+void calm_bodies(const Model& model, std::span<const char> which, State& state) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (which[b] == 0) continue;
+    const Body& body = model.bodies[b];
+    const Vec3 drift =
+        count_held(model, body) > 0 ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
+    parallel_for(body.nodes.size(), [&](Index k) {
+      const auto i = uz(body.nodes.begin + k);
+      if (model.inverse_mass[i] > 0.0) state.half_velocity[i] = drift;
+    });
+  }
+}
+
 }  // namespace sinew

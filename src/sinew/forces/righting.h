@@ -38,4 +38,8 @@ void right_tangled_bodies(const Model& model, const State& state, double h, Work
 // limited; a body that nothing holds falls with gravity as a whole. Sets positions and velocities.
 void lead_tangled_bodies(const Model& model, double h, const Workspace& workspace, State& state);
 
+// Takes the speed of the pull from the bodies of `which` (bodies; 0: none): the mean velocity is
+// left, or none where a node is held.
+void calm_bodies(const Model& model, std::span<const char> which, State& state);
+
 }  // namespace sinew

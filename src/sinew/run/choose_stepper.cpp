@@ -16,10 +16,16 @@ namespace {
 // Long enough that the first of them, which finds the loads new, does not decide alone.
 constexpr int trial_steps = 4;
 
-bool starts_tangled(const Model& model, const State& start, Workspace& workspace) {
-  if (!model.has_volume) return false;
-  compute_volume_pressures(model, start.position, workspace);
-  return find_tangled(model, workspace) > 0;
+// Puts bodies that start inside out where they are led back to: what counts is how they go on.
+void right(const Model& model, Workspace& workspace, State& state) {
+  if (!model.has_volume) return;
+  compute_volume_pressures(model, state.position, workspace);
+  if (find_tangled(model, workspace) == 0) return;
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (workspace.tangled[b] == 0) continue;
+    const std::vector<Vec3> shape = rest_shape_at(model, model.bodies[b], state.position);
+    std::copy(shape.begin(), shape.end(), state.position.begin() + model.bodies[b].nodes.begin);
+  }
 }
 
 struct Trial {
@@ -29,9 +35,11 @@ struct Trial {
 };
 
 // Nothing where a step finds no equilibrium.
-std::optional<Trial> try_implicit(const Contest& contest, const ImplicitOptions& options,
-                                  State state, ImplicitStepper& stepper) {
+std::optional<Trial> try_implicit(const Model& model, const Contest& contest,
+                                  const ImplicitOptions& options, State state,
+                                  ImplicitStepper& stepper) {
   Trial trial;
+  right(model, stepper.workspace(), state);
   try {
     for (int i = 0; i < trial_steps; ++i) {
       const ImplicitReport report = stepper.step(contest.implicit_step, options, state);
@@ -58,9 +66,6 @@ Choice choose_stepper(const Scene& scene, const Model& model, const State& start
   if (contest.projection != nullptr) {
     return {"verlet", fmt::format("implicit steps do not know {}", contest.projection)};
   }
-  if (starts_tangled(model, start, stepper.workspace())) {
-    return {"verlet", "only verlet leads a body back that starts inside out"};
-  }
   if (!std::isfinite(contest.stable_step)) return {"verlet", "nothing can move"};
   if (scene.dt && contest.verlet_step > contest.stable_step) {
     return {"implicit", fmt::format("the given step {:.3g} s is above the stable one, "
@@ -70,7 +75,7 @@ Choice choose_stepper(const Scene& scene, const Model& model, const State& start
   const double verlet_work = std::ceil(contest.interval / contest.verlet_step);
   const std::string verlet = fmt::format("verlet: stable step {:.3g} ms, {:.0f} steps a frame",
                                          1e3 * contest.stable_step, verlet_work);
-  const auto trial = try_implicit(contest, options, start, stepper);
+  const auto trial = try_implicit(model, contest, options, start, stepper);
   if (!trial) return {"verlet", verlet + "; implicit: a trial step found no equilibrium"};
   return {trial->work < verlet_work ? "implicit" : "verlet",
           fmt::format("{}; implicit: {:.1f} Newton steps and {:.1f} products a frame, the work of "

@@ -66,6 +66,7 @@ class ImplicitStepper {
  private:
   ImplicitReport advance(double h, const ImplicitOptions& options, State& state);
   ImplicitReport lead_back(double h, const ImplicitOptions& options, State& state);
+  bool half_righted(const State& led, std::vector<char>& righted);
   bool try_step(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
   bool sdirk2(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
   bool backward_euler(double h, const ImplicitOptions& options, State& state,

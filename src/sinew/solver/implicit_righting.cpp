@@ -4,18 +4,49 @@
 #include "sinew/base/parallel.h"
 #include "sinew/contact/ground.h"
 #include "sinew/forces/righting.h"
+#include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/solver/implicit.h"
 
 namespace sinew {
+namespace {
+
+constexpr int most_ways = 20;  // that are led at once
+
+}  // namespace
+
+// Whether some tets of a body that was tangled are inverted, though too few to call it so: with
+// those, the material would rest in a fold. Says which bodies no longer are.
+bool ImplicitStepper::half_righted(const State& led, std::vector<char>& righted) {
+  const std::vector<char> was = workspace_.tangled;
+  prepare_stiffness(model_, led.position, workspace_);
+  find_tangled(model_, workspace_);
+  righted.assign(was.size(), 0);
+  bool half = false;
+  for (std::size_t b = 0; b < was.size(); ++b) {
+    if (was[b] == 0 || workspace_.tangled[b] != 0) continue;
+    righted[b] = 1;
+    const Range tets = model_.bodies[b].tets;
+    for (auto t = uz(tets.begin); t < uz(tets.end); ++t) {
+      half = half || workspace_.tet_volume[t] <= 0.0;
+    }
+  }
+  workspace_.tangled = was;
+  return half;
+}
 
 // Minimising leads into the nearest fold, so the nodes of tangled bodies are given the way that
 // righting pulls them; everything else takes its implicit step beside them.
 ImplicitReport ImplicitStepper::lead_back(double h, const ImplicitOptions& options, State& state) {
   const double energy = measure_energies(model_, state, workspace_).total();
   State led = state;
-  lead_tangled_bodies(model_, h, workspace_, led);
-  if (model_.ground) lift_onto_ground(model_, led.position);
+  std::vector<char> righted;
+  for (int way = 0; way < most_ways; ++way) {
+    lead_tangled_bodies(model_, h, workspace_, led);
+    if (model_.ground) lift_onto_ground(model_, led.position);
+    if (!half_righted(led, righted)) break;
+  }
+  calm_bodies(model_, righted, led);
 
   Model others = model_;
   for (std::size_t b = 0; b < model_.bodies.size(); ++b) {

@@ -21,7 +21,8 @@ constexpr double turn_per_load_step = 20.0 * 3.14159265358979 / 180.0;  // [rad]
 // rest state of one whose kappa is at most this many times mu: W(4) at nu = 0.499 takes 6 + 7
 // instead of 21.
 constexpr double soft_volume = 30.0;
-constexpr int most_cuts = 12;  // a load step may become this often half as long
+constexpr int most_cuts = 12;           // a load step may become this often half as long
+constexpr int cuts_before_falling = 2;  // then the body is followed as it falls to rest, once
 
 // The largest angle [rad] that a pin turns by between two times.
 double pins_turn(const Model& model, double from, double to) {
@@ -179,7 +180,7 @@ StaticSolver::StaticSolver(const Model& model)
 
 int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Vec3>& rhs,
                                 double tolerance, std::vector<Vec3>& u) {
-  constexpr double each = 1e-4;  // what single precision takes away in one go
+  double each = 1e-4;  // what single precision takes away in one go
   constexpr int most = 20000;
   Field r, p, q(u.size());
   double goal = 0.0;
@@ -197,7 +198,14 @@ int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Ve
     const double left = std::sqrt(dot(r, r));
     // Nothing but a prescribed displacement: its forces set the scale.
     if (goal == 0.0) goal = tolerance * left;
-    if (left <= goal || left > 0.5 * before) break;
+    if (left <= goal) break;
+    if (left > 0.5 * before) {  // too much in one go: from where it was, in shorter ones
+      if (each > 0.01) break;
+      each *= 30.0;
+      add(u, -1.0, p);
+      before = no_limit;
+      continue;
+    }
     before = left;
     products += linear_.solve(r, std::max(each, 0.5 * goal / left), most, {}, p);
     add(u, 1.0, p);
@@ -236,6 +244,24 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
   }
 }
 
+// Brings the pins to where they are at this share of the way between two times; the free nodes
+// follow as the tangent spreads their motion. Returns the Hessian products.
+int StaticSolver::move_pins_to(double start_time, double time, double share, State& state) {
+  Field move(state.position.size(), Vec3::Zero());
+  for (const Pin& pin : model_.pins) {
+    for (const Index node : pin.nodes) {
+      const double t = start_time + share * (time - start_time);
+      move[uz(node)] = pin.path.at(t, model_.rest_position[uz(node)]) - state.position[uz(node)];
+    }
+  }
+  int products = 0;
+  if (dot(move, move) > 0.0) {
+    products = solve_tangent(state.position, Field(move.size(), Vec3::Zero()), 1e-2, move);
+  }
+  add(state.position, 1.0, move);
+  return products;
+}
+
 StaticReport StaticSolver::solve(double time, const StaticOptions& options, State& state) {
   StaticReport report;
   const double start_time = state.time;
@@ -262,34 +288,15 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
       static_cast<int>(std::ceil(pins_turn(model_, start_time, time) / turn_per_load_step));
   double length = 1.0 / std::max({1, options.min_load_steps, turns});
   bool gradual = options.min_load_steps > 1;  // outer forces too
+  NewtonReport falls;
   int cuts = 0;
   double done = 0.0;
   while (done < 1.0) {
     const double next = done + length > 1.0 - 1e-9 ? 1.0 : done + length;
     const State before = state;
-    Field move(state.position.size(), Vec3::Zero());
-    for (const Pin& pin : model_.pins) {
-      for (const Index node : pin.nodes) {
-        const double t = start_time + next * (time - start_time);
-        move[uz(node)] = pin.path.at(t, model_.rest_position[uz(node)]) - state.position[uz(node)];
-      }
-    }
-    // The free nodes follow the pins as the tangent spreads their motion.
-    if (dot(move, move) > 0.0) {
-      report.products +=
-          solve_tangent(state.position, Field(move.size(), Vec3::Zero()), 1e-2, move);
-    }
-    add(state.position, 1.0, move);
+    report.products += move_pins_to(start_time, time, next, state);
     ++report.load_steps;
-    const auto newton = [&](const Model& model, double tolerance) {
-      const Objective objective{model, &dead_force, gradual ? 1.0 - next : 0.0};
-      NewtonOptions o{tolerance, options.max_newton, options.stop, {}};
-      if (options.on_progress) {
-        o.on_progress = [&, before_this = report.newton](const NewtonProgress& p) {
-          options.on_progress({report.load_steps, next, before_this + p.newton, p.residual});
-        };
-      }
-      const NewtonReport r = settle(objective, o, state);
+    const auto account = [&](const NewtonReport& r) {
       report.newton += r.newton;
       report.products += r.products;
       report.force = r.force;
@@ -298,6 +305,16 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
       report.within = r.within;
       report.stopped = r.stopped && !r.rests;
       return r.rests || r.stopped;
+    };
+    const auto newton = [&](const Model& model, double tolerance) {
+      const Objective objective{model, &dead_force, gradual ? 1.0 - next : 0.0};
+      NewtonOptions o{tolerance, options.max_newton, options.stop, {}};
+      if (options.on_progress) {
+        o.on_progress = [&, before_this = report.newton](const NewtonProgress& p) {
+          options.on_progress({report.load_steps, next, before_this + p.newton, p.residual});
+        };
+      }
+      return account(settle(objective, o, state));
     };
     // On the way it is enough to stay near the path.
     const double tolerance = next < 1.0 ? std::max(options.tolerance, 1e-3) : options.tolerance;
@@ -310,7 +327,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
       }
       continue;
     }
-    if (++cuts > most_cuts || report.newton > options.most_newton) {
+    if (++cuts > most_cuts || report.newton - falls.newton > options.most_newton) {
       throw Error(ErrorKind::diverged,
                   fmt::format("no rest state found: after {} Newton steps, at {:.3g} of the load, "
                               "the forces on the free nodes are {:.3g} of what they carry; there "
@@ -318,6 +335,12 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
                               report.newton, next, report.residual),
                   "make the load smaller, hold the body at more nodes, or take stepper = "
                   "\"verlet\"");
+    }
+    state = before;
+    if (cuts == cuts_before_falling && falls.newton == 0) {
+      const StaticProgress now{report.load_steps, 1.0, report.newton, 0.0};
+      falls = fall_to_rest(start_time, time, options, now, state);
+      if (account(falls)) break;
     }
     state = before;
     gradual = true;

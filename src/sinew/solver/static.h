@@ -71,6 +71,9 @@ class StaticSolver {
   Workspace& workspace() { return workspace_; }
 
  private:
+  NewtonReport fall_to_rest(double start_time, double time, const StaticOptions& options,
+                            StaticProgress progress, State& state);
+  int move_pins_to(double start_time, double time, double share, State& state);
   NewtonReport settle(Objective objective, const NewtonOptions& options, State& state);
 
   const Model& model_;

@@ -15,7 +15,7 @@ constexpr Index most_groups = 200;
 
 // What keeps the coarse matrix of a body that nothing holds from being singular, as a share of its
 // diagonal.
-constexpr double touch = 1e-7;
+constexpr double touch = 1e-5;
 
 // Cuts a set of nodes across its longest side at the median, and again, until it is small enough.
 void cut(const Model& model, std::vector<Index> nodes, Index most,

@@ -1,0 +1,94 @@
+// Rest states that Newton's method does not find from where it starts. docs/methods/static.md.
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/terms.h"
+#include "sinew/solver/newton.h"
+#include "sinew/solver/static.h"
+
+namespace sinew {
+
+// Follows the body as it would fall to rest: steps of backward Euler, of a length at which Newton's
+// method has little to do, that start anew without velocity whenever the body has passed its
+// fastest (kinetic damping, Cundall 1976). Comes through where a stiff part has to turn far and
+// straight steps go astray. All of the load at once.
+NewtonReport StaticSolver::fall_to_rest(double start_time, double time,
+                                        const StaticOptions& options, StaticProgress progress,
+                                        State& state) {
+  constexpr int few = 10;        // Newton steps
+  constexpr double near = 1e-4;  // what moves the body still, as a share of the load
+  double h = 1.0 / 30.0;         // [s]
+  double pull = 1.0;             // what still moves the body, as a share of the load
+  double fastest = 0.0;          // |v|^2
+  const Field outer = outer_forces(model_, state);
+  double load = std::sqrt(dot(outer, outer));  // [N]
+  NewtonReport report;
+  report.products = move_pins_to(start_time, time, 1.0, state);
+  Field velocity(state.position.size(), Vec3::Zero());
+  Field inertial;
+  const auto stand_still = [&] {
+    std::fill(velocity.begin(), velocity.end(), Vec3::Zero());
+    fastest = 0.0;
+  };
+  while (h > 1e-6 && report.newton <= 10 * options.most_newton) {
+    const State before = state;
+    inertial = before.position;
+    add(inertial, h, velocity);
+    Objective objective{model_};
+    objective.inertia = 1.0 / (h * h);
+    objective.inertial = &inertial;
+    if (!constraints_.empty()) objective.constraints = &constraints_;
+    constraints_.start(state, nullptr);
+    state.position = inertial;
+    const double tolerance = std::clamp(0.1 * pull, options.tolerance, 1e-3);
+    const NewtonReport step = minimise_within(
+        objective, linear_, {tolerance, 3 * few, options.stop, {}}, workspace_, state);
+    report.newton += step.newton;
+    report.products += step.products;
+    report.stopped = step.stopped;
+    if (step.stopped) return report;
+    if (!step.rests) {
+      state = before;
+      stand_still();
+      h *= 0.5;
+      continue;
+    }
+    const double force = parallel_sum(model_.node_count(), [&](Index i) {
+      velocity[uz(i)] = (state.position[uz(i)] - before.position[uz(i)]) / h;
+      if (model_.inverse_mass[uz(i)] == 0.0) velocity[uz(i)].setZero();
+      const double k = objective.inertia * model_.mass[uz(i)];
+      return k * k * (state.position[uz(i)] - inertial[uz(i)]).squaredNorm();
+    });
+    if (load == 0.0) load = std::max(std::sqrt(force), 1e-300);  // nothing but moved pins
+    pull = std::sqrt(force) / load;
+    progress.newton += step.newton;
+    progress.residual = pull;
+    if (options.on_progress) options.on_progress(progress);
+    if (step.newton < few) h *= 1.2;
+    const double speed = dot(velocity, velocity);
+    if (speed >= fastest) {
+      fastest = speed;
+      continue;
+    }
+    stand_still();
+    if (pull > near) continue;
+    const State here = state;
+    const NewtonReport rest =
+        settle({model_}, {options.tolerance, options.max_newton, options.stop, {}}, state);
+    report.newton += rest.newton;
+    report.products += rest.products;
+    if (rest.rests || rest.stopped) {
+      const NewtonReport before_it = report;
+      report = rest;
+      report.newton = before_it.newton;
+      report.products = before_it.products;
+      return report;
+    }
+    state = here;
+  }
+  report.rests = false;
+  return report;
+}
+
+}  // namespace sinew
