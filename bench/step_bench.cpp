@@ -15,6 +15,7 @@
 #include "sinew/scene/build.h"
 #include "sinew/solver/implicit.h"
 #include "sinew/solver/stable_step.h"
+#include "sinew/solver/static.h"
 #include "sinew/solver/verlet.h"
 
 namespace {
@@ -85,6 +86,55 @@ void ImplicitStep(benchmark::State& state) {
   state.counters["products"] = sum.products;
 }
 
+// The network law at E [kPa] and nu = 0.45, from rest.
+Model network_beam(std::int64_t k, std::int64_t kilopascals) {
+  return model_of(k, {"beam.law=neo-hookean", fmt::format("beam.young={}e3", kilopascals)});
+}
+
+// Gravity on W(k) to a residual of 0.1, which leaves 0.1 % of the tip's way.
+void StaticSolve(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const Model model = network_beam(state.range(0), 1500);
+  StaticSolver solver(model);
+  StaticOptions options;
+  options.tolerance = 0.1;
+  StaticReport report;
+  State s;
+  for (auto _ : state) {
+    s = initial_state(model);
+    report = solver.solve(0.0, options, s);
+  }
+  state.SetLabel("state " + hex(s.hash()));
+  state.counters["newton"] = report.newton;
+  state.counters["products"] = report.products;
+}
+
+// A frame of 1/60 s in a single step, mean over the first 30 of the fall.
+void ImplicitFrame(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const Model model = network_beam(state.range(0), state.range(1));
+  ImplicitStepper stepper(model);
+  ImplicitOptions options;
+  options.tolerance = 0.1;
+  stepper.prepare(1.0 / 60.0, options);
+  const State start = initial_state(model);
+  ImplicitReport sum;
+  State s;
+  int frames = 0;
+  for (auto _ : state) {
+    if (frames++ % 30 == 0) {
+      sum = {};
+      s = start;
+    }
+    const ImplicitReport step = stepper.step(1.0 / 60.0, options, s);
+    sum.newton += step.newton;
+    sum.products += step.products;
+  }
+  const int counted = (frames - 1) % 30 + 1;
+  state.counters["newton"] = static_cast<double>(sum.newton) / counted;
+  state.counters["products"] = static_cast<double>(sum.products) / counted;
+}
+
 void LimitSweep(benchmark::State& state) {
   const ThreadLimit one(1);
   const Model model = model_of(
@@ -134,6 +184,11 @@ BENCHMARK(MachineMultiplyAdd);
 BENCHMARK(SpringForces)->Arg(4)->Arg(8)->Arg(17)->Arg(0);
 BENCHMARK(VerletStep)->ArgsProduct({{4, 8, 17, 0}, {1, 2}})->UseRealTime();
 BENCHMARK(ImplicitStep)->ArgsProduct({{4, 8, 0}, {1, 3, 6}})->Unit(benchmark::kMillisecond);
+BENCHMARK(StaticSolve)->Arg(4)->Arg(8)->Arg(17)->Unit(benchmark::kMillisecond);
+BENCHMARK(ImplicitFrame)
+    ->ArgsProduct({{4, 8, 17}, {15, 1500}})
+    ->Iterations(30)
+    ->Unit(benchmark::kMillisecond);
 BENCHMARK(LimitSweep)->Arg(4)->Arg(8)->Arg(0);
 BENCHMARK(StableStepSearch)->Arg(4)->Arg(8)->Arg(0)->Unit(benchmark::kMillisecond);
 
