@@ -5,6 +5,7 @@ find_package(Eigen3 REQUIRED)
 find_package(TBB REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
+find_package(hwy REQUIRED)
 find_package(tomlplusplus REQUIRED)
 find_package(nlohmann_json REQUIRED)
 

@@ -34,6 +34,13 @@ void parallel_blocks(Index n, const F& f) {
   tbb::parallel_for(Index{0}, blocks, [&](Index b) { f(b, block(b, n)); });
 }
 
+// Calls f(i) for every i in [0, n), each of them much work.
+template <typename F>
+void parallel_tasks(Index n, const F& f) {
+  if (n == 1) return f(0);
+  tbb::parallel_for(Index{0}, n, [&](Index i) { f(i); });
+}
+
 // Calls f(i) for every i in [0, n).
 template <typename F>
 void parallel_for(Index n, const F& f) {

@@ -1,0 +1,143 @@
+// The single precision path against the plain one.
+#include "sinew/forces/packed.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/assemble.h"
+#include "sinew/forces/network.h"
+#include "sinew/forces/springs.h"
+#include "sinew/forces/volume.h"
+#include "sinew/mesh/shapes.h"
+
+namespace sinew {
+namespace {
+
+Model bar(const std::vector<Material>& materials, Index k = 3) {
+  Model m;
+  BodySpec body;
+  body.name = "bar";
+  body.mesh = beam(Vec3(0.1, 0.1, 0.4), {k, k, 4 * k});
+  body.materials = materials;
+  body.regions.resize(materials.size(), "part");
+  for (Index t = 0; t < body.mesh.tet_count(); ++t) {
+    const bool far = body.mesh.nodes[uz(body.mesh.tets[uz(t)][0])].z() > 0.2;
+    body.tet_region.push_back(materials.size() > 1 && far ? 1 : 0);
+  }
+  add_body(m, body);
+  finish(m);
+  return m;
+}
+
+State moved(const Model& m, double size) {
+  State s = initial_state(m);
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  for (std::size_t i = 0; i < s.position.size(); ++i) {
+    s.position[i] += size * Vec3(uniform(random), uniform(random), uniform(random));
+    s.half_velocity[i] = Vec3(uniform(random), uniform(random), uniform(random));
+  }
+  return s;
+}
+
+std::vector<Vec3> plain(const Model& m, const State& s, double* heat = nullptr) {
+  Workspace w(m);
+  const double power = compute_spring_forces(m, s, w);
+  if (heat != nullptr) *heat = power;
+  if (m.has_volume) compute_volume_pressures(m, s.position, w);
+  std::vector<Vec3> f(s.position.size());
+  for (Index i = 0; i < m.node_count(); ++i) {
+    f[uz(i)] = gather_springs(m, w, i);
+    if (!m.network_start.empty()) f[uz(i)] += network_pull(m, s.position, i);
+    if (m.has_volume) f[uz(i)] += push_of_tets(m, w, i);
+  }
+  return f;
+}
+
+std::vector<Vec3> packed(const Model& m, const State& s, double* heat = nullptr) {
+  PackedForces p(m);
+  const double power = p.compute(m, s);
+  if (heat != nullptr) *heat = power;
+  std::vector<Vec3> f(s.position.size());
+  p.gather({0, m.node_count()}, f);
+  return f;
+}
+
+double difference(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double error = 0.0;
+  double size = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    error += (a[i] - b[i]).squaredNorm();
+    size += b[i].squaredNorm();
+  }
+  return std::sqrt(error / size);
+}
+
+Material material(Law law, double young, double poisson) {
+  Material m;
+  m.law = law;
+  m.young = young;
+  m.poisson = poisson;
+  return m;
+}
+
+TEST(PackedForces, AreThePlainOnesOfEveryLaw) {
+  for (const Law law : {Law::neo_hookean, Law::lloyd, Law::vangelder, Law::calibrated}) {
+    for (const double poisson : {0.3, 0.499}) {
+      for (const double size : {1e-5, 2e-3, 2e-2}) {  // the largest inverts tets
+        const Model m = bar({material(law, 1e6, poisson)});
+        const State s = moved(m, size);
+        double heat = 0.0;
+        double plain_heat = 0.0;
+        EXPECT_LT(difference(packed(m, s, &heat), plain(m, s, &plain_heat)), 3e-6)
+            << static_cast<int>(law) << " " << poisson << " " << size;
+        EXPECT_NEAR(heat, plain_heat, 1e-5 * plain_heat);
+      }
+    }
+  }
+}
+
+TEST(PackedForces, KnowTetVolumeAndRegions) {
+  Material tets = material(Law::neo_hookean, 1e4, 0.45);
+  tets.volume = Volume::tet;
+  tets.beta = 1.0;
+  const Model own = bar({tets});
+  EXPECT_LT(difference(packed(own, moved(own, 2e-3)), plain(own, moved(own, 2e-3))), 3e-6);
+  const Model two =
+      bar({material(Law::neo_hookean, 1e4, 0.45), material(Law::neo_hookean, 1e9, 0.3)});
+  EXPECT_LT(difference(packed(two, moved(two, 2e-3)), plain(two, moved(two, 2e-3))), 3e-6);
+}
+
+TEST(PackedForces, NothingIsLeftAtRestAndOfAShift) {
+  const Model m = bar({material(Law::neo_hookean, 1e9, 0.499)});
+  State s = initial_state(m);
+  for (const Vec3& f : packed(m, s)) EXPECT_EQ(f, Vec3(Vec3::Zero()));
+  for (Vec3& x : s.position) x += Vec3(0.5, 0.25, -2.0);
+  for (const Vec3& f : packed(m, s)) EXPECT_EQ(f, Vec3(Vec3::Zero()));
+}
+
+TEST(PackedForces, KeepTheirDigitsAtSmallStrains) {
+  const Model m = bar({material(Law::neo_hookean, 1e9, 0.45)});
+  State s = initial_state(m);
+  for (std::size_t i = 0; i < s.position.size(); ++i) {
+    const Vec3& x = m.rest_position[i];
+    s.position[i] += 1e-7 * Vec3(x.z() * x.z(), x.x() * x.z(), x.z());
+  }
+  EXPECT_LT(difference(packed(m, s), plain(m, s)), 1e-5);
+}
+
+TEST(PackedForces, AreTheSameBitsOnAnyNumberOfThreads) {
+  const Model m = bar({material(Law::neo_hookean, 1e5, 0.45)}, 8);
+  const State s = moved(m, 1e-3);
+  const auto on = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return packed(m, s);
+  };
+  EXPECT_EQ(on(1), on(2));
+}
+
+}  // namespace
+}  // namespace sinew
