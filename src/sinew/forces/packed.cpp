@@ -87,7 +87,7 @@ class PackedForces::Slots {
     others_.clear();
   }
 
-  // Counted from the patch's first.
+  // 4 x slot, counted from the patch's first.
   std::uint16_t of(Index node, Index cell) {
     Index& slot = first_[uz(node)];
     if (slot < 0) slot = add(node, cell);
@@ -113,7 +113,9 @@ class PackedForces::Slots {
     packed_.slot_cell_.push_back(cell);
     return end() - 1;
   }
-  std::uint16_t local(Index slot) const { return static_cast<std::uint16_t>(uz(slot) - begin_); }
+  std::uint16_t local(Index slot) const {
+    return static_cast<std::uint16_t>(4 * (uz(slot) - begin_));
+  }
 
   PackedForces& packed_;
   std::size_t begin_ = 0;
@@ -160,9 +162,7 @@ PackedForces::PackedForces(const Model& model) {
                         {first_springs, first_springs + groups_of(springs[p].size())}});
   }
   list_slots(model);
-  network_start_ = model.network_start;
-  network_node_ = model.network_node;
-  network_stiffness_.assign(model.network_stiffness.begin(), model.network_stiffness.end());
+  pack_network(model);
   displacement_.assign(4 * nodes, 0.0f);
   slot_displacement_.assign(4 * slot_node_.size(), 0.0f);
   slot_force_.assign(4 * slot_node_.size(), 0.0f);
@@ -171,7 +171,6 @@ PackedForces::PackedForces(const Model& model) {
     slot_velocity_.assign(4 * slot_node_.size(), 0.0f);
   }
   if (has_tets_) {
-    slot_volume_.assign(slot_node_.size(), 0.0f);
     tet_change_.assign(tet_data_.size() / uz(packed_tet_fields), 0.0f);
   }
 }
@@ -239,6 +238,21 @@ void PackedForces::pack_springs(const Model& model, const std::vector<Index>& sp
   }
 }
 
+void PackedForces::pack_network(const Model& model) {
+  if (model.network_start.empty()) return;
+  network_start_.push_back(0);
+  for (Index i = 0; i < model.node_count(); ++i) {
+    for (auto k = uz(model.network_start[uz(i)]); k < uz(model.network_start[uz(i) + 1]); ++k) {
+      network_offset_.push_back(4 * static_cast<std::uint32_t>(model.network_node[k]));
+      network_stiffness_.push_back(static_cast<float>(model.network_stiffness[k]));
+    }
+    const std::size_t fours = (network_offset_.size() + 3) / 4;
+    network_offset_.resize(4 * fours, 4 * static_cast<std::uint32_t>(i));
+    network_stiffness_.resize(4 * fours, 0.0f);
+    network_start_.push_back(static_cast<Index>(network_offset_.size()));
+  }
+}
+
 void PackedForces::list_slots(const Model& model) {
   list(model.rest_position.size(), slot_node_, node_start_, node_slot_);
   if (!has_cells_) return;
@@ -274,18 +288,18 @@ double PackedForces::compute(const Model& model, const State& state) {
       const auto n = uz(slot_node_[s]);
       std::copy_n(displacement_.begin() + static_cast<std::ptrdiff_t>(4 * n), 4,
                   slot_displacement_.begin() + static_cast<std::ptrdiff_t>(4 * s));
-      if (has_tets_) slot_volume_[s] = 0.0f;
+      slot_force_[4 * s + 3] = 0.0f;
     }
     if (!has_tets_) return;
     packed_volumes(tets_of(patch), slot_displacement_.data() + 4 * patch.slots.begin,
                    tet_change_.data() + packed_lanes * patch.tets.begin,
-                   slot_volume_.data() + patch.slots.begin);
+                   slot_force_.data() + 4 * patch.slots.begin);
   });
   if (has_cells_) {
     parallel_for(model.cell_count(), [&](Index c) {
       float change = 0.0f;
       for (auto k = uz(cell_start_[uz(c)]); k < uz(cell_start_[uz(c) + 1]); ++k) {
-        change += slot_volume_[uz(cell_slot_[k])];
+        change += slot_force_[4 * uz(cell_slot_[k]) + 3];
       }
       cell_pressure_[uz(c)] = cell_stiffness_[uz(c)] * change;
     });
@@ -320,7 +334,7 @@ double PackedForces::compute(const Model& model, const State& state) {
 }
 
 void PackedForces::gather(Range nodes, std::span<Vec3> force) const {
-  packed_gather({network_start_.empty() ? nullptr : network_start_.data(), network_node_.data(),
+  packed_gather({network_start_.empty() ? nullptr : network_start_.data(), network_offset_.data(),
                  network_stiffness_.data(), node_start_.data(), node_slot_.data()},
                 displacement_.data(), slot_force_.data(), nodes, force.data());
 }

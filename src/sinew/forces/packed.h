@@ -44,6 +44,7 @@ class PackedForces {
   void pack_tets(const Model& model, const std::vector<Index>& tets, Slots& slots);
   void pack_springs(const Model& model, const std::vector<Index>& springs, Slots& slots);
   void list_slots(const Model& model);
+  void pack_network(const Model& model);
   PackedTets tets_of(const Patch& patch) const;
   PackedSprings springs_of(const Patch& patch) const;
 
@@ -55,13 +56,13 @@ class PackedForces {
   std::vector<Index> cell_start_;          // offsets into cell_slot_ (cells + 1)
   std::vector<Index> cell_slot_;           // increasing for each cell
   std::vector<float> cell_stiffness_;      // kappa_c / V_c [Pa/m3] (cells)
-  std::vector<std::uint16_t> tet_corner_;  // slots, counted from the patch's first (4 x 8 a group)
+  std::vector<std::uint16_t> tet_corner_;  // 4 x slot, counted from the patch's first (32 a group)
   std::vector<float> tet_data_;            // packed_tet_fields x 8 a group
-  std::vector<std::uint16_t> spring_end_;  // as tet_corner_ (2 x 8 a group)
+  std::vector<std::uint16_t> spring_end_;  // as tet_corner_ (16 a group)
   std::vector<float> spring_data_;         // packed_spring_fields x 8 a group
-  std::vector<Index> network_start_;       // offsets (nodes + 1)
-  std::vector<Index> network_node_;
-  std::vector<float> network_stiffness_;  // [N/m]
+  std::vector<Index> network_start_;       // offsets (nodes + 1), each a multiple of four
+  std::vector<std::uint32_t> network_offset_;  // 4 x node
+  std::vector<float> network_stiffness_;       // [N/m]
   bool has_tets_ = false;
   bool has_cells_ = false;
 
@@ -70,8 +71,7 @@ class PackedForces {
   std::vector<float> velocity_;           // (nodes)
   std::vector<float> slot_displacement_;  // (slots) the fourth: the pressure of its cell
   std::vector<float> slot_velocity_;      // (slots)
-  std::vector<float> slot_force_;         // (slots)
-  std::vector<float> slot_volume_;        // change of the slot's share of its cell [m3] (slots)
+  std::vector<float> slot_force_;         // (slots) the fourth: its share of its cell's change [m3]
   std::vector<float> tet_change_;         // v - V [m3] (8 a group)
   std::vector<float> cell_pressure_;      // (cells)
   float smallest_ratio_ = 1.0f;

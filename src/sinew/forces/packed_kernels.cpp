@@ -50,10 +50,10 @@ template <class D>
 HWY_INLINE hn::Vec<D> row(D d, const float* base, const std::uint16_t* index, std::size_t k) {
   const Four four;
   if constexpr (hn::MaxLanes(D()) == 8) {
-    return hn::Combine(d, hn::LoadU(four, base + 4 * index[k + 4]),
-                       hn::LoadU(four, base + 4 * index[k]));
+    return hn::Combine(d, hn::LoadU(four, base + std::size_t{index[k + 4]}),
+                       hn::LoadU(four, base + std::size_t{index[k]}));
   } else {
-    return hn::LoadU(d, base + 4 * index[k]);
+    return hn::LoadU(d, base + std::size_t{index[k]});
   }
 }
 
@@ -82,10 +82,10 @@ HWY_INLINE Quad load(const float* base, const std::uint16_t* index) {
 template <class D>
 HWY_INLINE void add_row(D d, float* base, const std::uint16_t* index, std::size_t k, hn::Vec<D> r) {
   const Four four;
-  float* low = base + 4 * index[k];
+  float* low = base + std::size_t{index[k]};
   if constexpr (hn::MaxLanes(D()) == 8) {
     hn::StoreU(hn::Add(hn::LoadU(four, low), hn::LowerHalf(four, r)), four, low);
-    float* high = base + 4 * index[k + 4];
+    float* high = base + std::size_t{index[k + 4]};
     hn::StoreU(hn::Add(hn::LoadU(four, high), hn::UpperHalf(four, r)), four, high);
   } else {
     hn::StoreU(hn::Add(hn::LoadU(d, low), r), d, low);
@@ -117,7 +117,7 @@ HWY_INLINE V3 field3(const float* group, Index f, std::size_t lane) {
 
 // v - V = [ d_1 . (e_2 x e_3) + E_1 . (d_2 x e_3 + E_2 x d_3) ] / 6,  d the change of an edge:
 // nothing that cancels at rest.
-void volumes(const PackedTets& tets, const float* u, float* change, float* volume) {
+void volumes(const PackedTets& tets, const float* u, float* change, float* force) {
   const Lanes d;
   HWY_ALIGN float part[4 * packed_lanes];
   for (Index g = 0; g < tets.groups; ++g) {
@@ -140,7 +140,13 @@ void volumes(const PackedTets& tets, const float* u, float* change, float* volum
                    part + packed_lanes * a + lane);
       }
     }
-    for (std::size_t k = 0; k < 4 * packed_lanes; ++k) volume[corner[k]] += part[k];
+    float* volume = force + 3;
+    for (std::size_t k = 0; k < 4 * packed_lanes; k += 4) {
+      volume[std::size_t{corner[k]}] += part[k];
+      volume[std::size_t{corner[k + 1]}] += part[k + 1];
+      volume[std::size_t{corner[k + 2]}] += part[k + 2];
+      volume[std::size_t{corner[k + 3]}] += part[k + 3];
+    }
   }
 }
 
@@ -241,6 +247,42 @@ double spring_forces(const PackedSprings& springs, const float* u, const float* 
   return sum;
 }
 
+// sum_j k_ij (u_j - u_i) over entries in fours: each of the four has its own sum.
+template <class D>
+HWY_INLINE hn::Vec<Four> network_pull(D d, const PackedNodes& nodes, const float* u,
+                                      hn::Vec<Four> own, std::size_t k, std::size_t end) {
+  const Four four;
+  const auto at = [&](std::size_t e) {
+    return hn::LoadU(four, u + std::size_t{nodes.network_offset[e]});
+  };
+  const auto stiffness = [&](std::size_t e) { return hn::Set(four, nodes.network_stiffness[e]); };
+  if constexpr (hn::MaxLanes(D()) == 8) {
+    const auto owns = hn::Combine(d, own, own);
+    auto a = hn::Zero(d);
+    auto b = hn::Zero(d);
+    for (; k < end; k += 4) {
+      a = hn::Add(a, hn::Mul(hn::Combine(d, stiffness(k + 1), stiffness(k)),
+                             hn::Sub(hn::Combine(d, at(k + 1), at(k)), owns)));
+      b = hn::Add(b, hn::Mul(hn::Combine(d, stiffness(k + 3), stiffness(k + 2)),
+                             hn::Sub(hn::Combine(d, at(k + 3), at(k + 2)), owns)));
+    }
+    return hn::Add(hn::Add(hn::LowerHalf(four, a), hn::UpperHalf(four, a)),
+                   hn::Add(hn::LowerHalf(four, b), hn::UpperHalf(four, b)));
+  } else {
+    auto a = hn::Zero(four);
+    auto b = a;
+    auto c = a;
+    auto e = a;
+    for (; k < end; k += 4) {
+      a = hn::Add(a, hn::Mul(stiffness(k), hn::Sub(at(k), own)));
+      b = hn::Add(b, hn::Mul(stiffness(k + 1), hn::Sub(at(k + 1), own)));
+      c = hn::Add(c, hn::Mul(stiffness(k + 2), hn::Sub(at(k + 2), own)));
+      e = hn::Add(e, hn::Mul(stiffness(k + 3), hn::Sub(at(k + 3), own)));
+    }
+    return hn::Add(hn::Add(a, b), hn::Add(c, e));
+  }
+}
+
 void gather(const PackedNodes& nodes, const float* u, const float* slot_force, Range range,
             Vec3* force) {
   const Four four;
@@ -251,21 +293,8 @@ void gather(const PackedNodes& nodes, const float* u, const float* slot_force, R
       sum = hn::Add(sum, hn::LoadU(four, slot_force + 4 * uz(nodes.slot[k])));
     }
     if (nodes.network_start != nullptr) {
-      const auto own = hn::LoadU(four, u + 4 * n);
-      auto odd = hn::Zero(four);
-      auto k = uz(nodes.network_start[n]);
-      const auto end = uz(nodes.network_start[n + 1]);
-      for (; k + 1 < end; k += 2) {
-        const auto a = hn::LoadU(four, u + 4 * uz(nodes.network_node[k]));
-        const auto b = hn::LoadU(four, u + 4 * uz(nodes.network_node[k + 1]));
-        sum = hn::Add(sum, hn::Mul(hn::Set(four, nodes.network_stiffness[k]), hn::Sub(a, own)));
-        odd = hn::Add(odd, hn::Mul(hn::Set(four, nodes.network_stiffness[k + 1]), hn::Sub(b, own)));
-      }
-      if (k < end) {
-        const auto a = hn::LoadU(four, u + 4 * uz(nodes.network_node[k]));
-        sum = hn::Add(sum, hn::Mul(hn::Set(four, nodes.network_stiffness[k]), hn::Sub(a, own)));
-      }
-      sum = hn::Add(sum, odd);
+      sum = hn::Add(sum, network_pull(Lanes(), nodes, u, hn::LoadU(four, u + 4 * n),
+                                      uz(nodes.network_start[n]), uz(nodes.network_start[n + 1])));
     }
     hn::StoreU(sum, four, out);
     force[n] =
@@ -286,8 +315,8 @@ HWY_EXPORT(tet_forces);
 HWY_EXPORT(spring_forces);
 HWY_EXPORT(gather);
 
-void packed_volumes(const PackedTets& tets, const float* u, float* change, float* volume) {
-  HWY_DYNAMIC_DISPATCH(volumes)(tets, u, change, volume);
+void packed_volumes(const PackedTets& tets, const float* u, float* change, float* force) {
+  HWY_DYNAMIC_DISPATCH(volumes)(tets, u, change, force);
 }
 
 float packed_tet_forces(const PackedTets& tets, const float* u, const float* change, float* force) {

@@ -16,29 +16,30 @@ inline constexpr Index packed_spring_fields = 7;
 inline constexpr Index packed_lanes = 8;
 
 struct PackedTets {
-  const std::uint16_t* corner = nullptr;
+  const std::uint16_t* corner = nullptr;  // 4 x slot: where its four floats begin
   const float* data = nullptr;
   Index groups = 0;
 };
 
 struct PackedSprings {
-  const std::uint16_t* end = nullptr;
+  const std::uint16_t* end = nullptr;  // as corner
   const float* data = nullptr;
   Index groups = 0;
 };
 
-// change = v - V of every tet; adds the corners' shares of it to `volume` (slots).
-void packed_volumes(const PackedTets& tets, const float* u, float* change, float* volume);
-// Adds the forces of the tets to `force` (4 a slot). u: with the cells' pressures in the fourth
-// places. Returns the smallest v/V.
+// change = v - V of every tet; adds the corners' shares of it to the fourth places of `force`
+// (4 a slot).
+void packed_volumes(const PackedTets& tets, const float* u, float* change, float* force);
+// Adds the forces of the tets to `force`. u: with the cells' pressures in the fourth places.
+// Returns the smallest v/V.
 float packed_tet_forces(const PackedTets& tets, const float* u, const float* change, float* force);
 // Adds the forces of the springs; returns the heat of the dashpots [W].
 double packed_spring_forces(const PackedSprings& springs, const float* u, const float* velocity,
                             float* force);
 
 struct PackedNodes {
-  const Index* network_start = nullptr;  // may be null: no network
-  const Index* network_node = nullptr;
+  const Index* network_start = nullptr;           // may be null: no network
+  const std::uint32_t* network_offset = nullptr;  // 4 x node; in fours
   const float* network_stiffness = nullptr;
   const Index* slot_start = nullptr;
   const Index* slot = nullptr;
