@@ -45,7 +45,7 @@ Vec3 mean_velocity(const Model& model, const State& state, const Body& body) {
 
 int find_tangled(const Model& model, Workspace& workspace) {
   workspace.tangled.assign(model.bodies.size(), 0);
-  if (!model.has_volume) return 0;
+  if (!model.has_volume || !workspace.has_tets) return 0;
   int tangled = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Range tets = model.bodies[b].tets;

@@ -4,9 +4,11 @@
 #include "sinew/forces/loads.h"
 #include "sinew/forces/network.h"
 #include "sinew/forces/obstacles.h"
+#include "sinew/forces/packed.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
+#include "sinew/forces/volume_law.h"
 #include "sinew/mesh/tet_mesh.h"
 
 namespace sinew {
@@ -26,8 +28,17 @@ double outer_potential(const Model& model, const State& state) {
 }  // namespace
 
 double compute_forces(const Model& model, const State& state, Workspace& workspace) {
-  double power = compute_spring_forces(model, state, workspace);
-  if (model.has_volume) compute_volume_pressures(model, state.position, workspace);
+  double power = 0.0;
+  const bool packed = workspace.packed != nullptr;
+  if (packed) {
+    power = workspace.packed->compute(model, state);
+    workspace.has_tets = workspace.packed->smallest_ratio() < guard_threshold + guard_margin;
+  } else {
+    power = compute_spring_forces(model, state, workspace);
+  }
+  if (model.has_volume && (!packed || workspace.has_tets)) {
+    compute_volume_pressures(model, state.position, workspace);
+  }
   const bool viscous = !model.tet_viscosity.empty();
   if (viscous) {
     power += compute_viscous_forces(model, state.position, state.half_velocity, workspace);
@@ -37,11 +48,12 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
   workspace.partial.assign(static_cast<std::size_t>(block_count(n)), 0.0);
   parallel_blocks(n, [&](Index b, Range r) {
     double drag_power = 0.0;
+    if (packed) workspace.packed->gather(r, workspace.force);
     for (Index i = r.begin; i < r.end; ++i) {
       const auto k = uz(i);
-      Vec3 f = gather_springs(model, workspace, i);
-      if (network) f += network_pull(model, state.position, i);
-      if (model.has_volume) f += push_of_tets(model, workspace, i);
+      Vec3 f = packed ? workspace.force[k] : gather_springs(model, workspace, i);
+      if (!packed && network) f += network_pull(model, state.position, i);
+      if (!packed && model.has_volume) f += push_of_tets(model, workspace, i);
       if (viscous) f += gather_viscous(model, workspace, i);
       if (model.inverse_mass[k] > 0.0) {
         const Vec3& w = state.half_velocity[k];
@@ -91,6 +103,9 @@ double potential_energy(const Model& model, const State& state, Workspace& works
 
 Energies measure_energies(const Model& model, const State& state, Workspace& workspace) {
   compute_forces(model, state, workspace);
+  if (model.has_volume && !workspace.has_tets) {
+    compute_volume_pressures(model, state.position, workspace);
+  }
   const std::vector<Vec3> v = synchronous_velocity(model, state, workspace);
   Energies e;
   e.kinetic = parallel_sum(model.node_count(), [&](Index i) {

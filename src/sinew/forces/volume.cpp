@@ -162,6 +162,7 @@ void finish_volume_terms(Model& model) {
 }
 
 void compute_volume_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+  workspace.has_tets = true;
   compute_tet_geometry(model, x, workspace);
   compute_cell_pressures(model, workspace);
   parallel_for(model.tet_count(), [&](Index i) {
@@ -280,11 +281,11 @@ void press_cells(const Model& model, std::span<const double> weight, Workspace& 
 }
 
 double guard_frequency2(const Model& model, const Workspace& workspace) {
-  constexpr double margin = 0.1;  // what v/V may lose within a step
+  if (!workspace.has_tets) return 0.0;
   const auto of_tet = [&](std::size_t t) {
     const double rest = model.rest_volume[t];
     const double ratio = workspace.tet_volume[t] / rest;
-    const double stiffness = guard_stiffness(ratio - margin, guard_modulus(model, t));
+    const double stiffness = guard_stiffness(ratio - guard_margin, guard_modulus(model, t));
     if (stiffness == 0.0) return 0.0;
     const Tet& tet = model.tets[t];
     double sum = 0.0;

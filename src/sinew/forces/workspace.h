@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <vector>
 
 #include "sinew/base/vec.h"
@@ -9,8 +10,13 @@
 
 namespace sinew {
 
+class PackedForces;
+
 struct Workspace {
   explicit Workspace(const Model& model);
+
+  // Where it is set, compute_forces() takes tets and springs from it, in single precision.
+  std::shared_ptr<PackedForces> packed;
 
   std::vector<Vec3> spring_force;     // on end 0 of each spring [N] (springs)
   std::vector<Vec3> force;            // total on each node [N] (nodes)
@@ -22,6 +28,7 @@ struct Workspace {
   std::vector<char> tangled;  // of find_tangled: 1 where a body is (bodies)
 
   // Volume terms; empty where the model has none.
+  bool has_tets = true;  // false: not of the last forces, which saw no tet near turning inside out
   std::vector<double> tet_volume;                 // v_t [m3] (tets)
   std::vector<std::array<Vec3, 4>> tet_gradient;  // dv_t/dx of the corners [m2] (tets)
   std::vector<double> tet_pressure;               // s_t [Pa] (tets)

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sinew/base/error.h"
+#include "sinew/forces/packed.h"
 #include "sinew/forces/volume.h"
 #include "sinew/run/choose_stepper.h"
 #include "sinew/solver/verlet.h"
@@ -134,6 +135,7 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
     run.stable_step = run.smallest_stable_step = no_limit;
     return;
   }
+  if (scene.precision == "single") workspace_.packed = std::make_shared<PackedForces>(model);
   if (goes_on) return;
   run.stable_step = stable.step;
   run.smallest_stable_step = stable.step;

@@ -107,6 +107,7 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.springs = model.spring_count();
   s.stepper = run.stepper;
   s.stepper_asked = scene.stepper;
+  s.precision = run.stepper == "verlet" ? scene.precision : "double";
   s.stepper_reason = run.stepper_reason;
   s.dt_auto = !scene.dt.has_value();
   s.dt = run.step > 0.0 ? run.step : run.target_step;
@@ -177,6 +178,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
           {"laws", laws},
           {"stepper", s.stepper},
           {"stepper_asked", s.stepper_asked},
+          {"precision", s.precision},
           {"stepper_reason", s.stepper_reason},
           {"dt", s.dt},
           {"dt_auto", s.dt_auto},

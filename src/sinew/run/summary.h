@@ -46,6 +46,7 @@ struct Summary {
   Index nodes = 0, tets = 0, springs = 0;
   std::string stepper;         // the one that ran
   std::string stepper_asked;   // of the scene
+  std::string precision;       // of the forces: single, double
   std::string stepper_reason;  // of stepper = "auto"
   bool dt_auto = true;
   double dt = 0.0;           // the step last taken [s]

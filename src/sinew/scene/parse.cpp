@@ -88,6 +88,7 @@ Scene parse_root(const DocValue& document) {
   root.number("duration", scene.duration);
   if (const auto stepper = root.word("stepper")) scene.stepper = *stepper;
   if (const auto scheme = root.word("scheme")) scene.scheme = *scheme;
+  if (const auto precision = root.word("precision")) scene.precision = *precision;
   root.number("tolerance", scene.tolerance);
   if (root.number("budget_ms", scene.budget_ms)) parse_budget(root, scene);
   if (!root.word("dt")) root.number("dt", scene.dt);

@@ -149,17 +149,18 @@ struct SceneOutput {
 };
 
 struct Scene {
-  std::string name;                 // default: the file's stem
-  std::string title;                // one line
-  std::string look_for;             // a sentence on what to look for
-  double duration = 2.0;            // [s]
-  std::string stepper = "verlet";   // verlet, implicit, static, auto
-  std::string scheme = "sdirk2";    // implicit: sdirk2, backward-euler
-  double tolerance = 1e-6;          // static: residual of a rest state, as a share of the forces
-  std::optional<double> dt;         // [s]; absent: "auto"
-  std::optional<double> budget_ms;  // [ms] of wall time that the steps of a frame may take
-  int substeps = 1;                 // the step taken is dt / substeps
-  double safety = 0.9;              // share of the stable step that dt = "auto" takes
+  std::string name;                  // default: the file's stem
+  std::string title;                 // one line
+  std::string look_for;              // a sentence on what to look for
+  double duration = 2.0;             // [s]
+  std::string stepper = "verlet";    // verlet, implicit, static, auto
+  std::string scheme = "sdirk2";     // implicit: sdirk2, backward-euler
+  double tolerance = 1e-6;           // static: residual of a rest state, as a share of the forces
+  std::string precision = "double";  // verlet: of the forces of tets and springs: single, double
+  std::optional<double> dt;          // [s]; absent: "auto"
+  std::optional<double> budget_ms;   // [ms] of wall time that the steps of a frame may take
+  int substeps = 1;                  // the step taken is dt / substeps
+  double safety = 0.9;               // share of the stable step that dt = "auto" takes
   bool allow_unstable = false;
   Vec3 gravity = Vec3(0.0, -9.81, 0.0);
   int limit_sweeps = 20;

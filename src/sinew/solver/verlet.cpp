@@ -12,6 +12,7 @@
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/righting.h"
+#include "sinew/forces/springs.h"
 #include "sinew/forces/terms.h"
 #include "sinew/forces/volume_limit.h"
 
@@ -143,9 +144,10 @@ Index suspect_spring(const Model& model, const Workspace& workspace, Index node)
   return suspect;
 }
 
-[[noreturn]] void report_divergence(const Model& model, const Workspace& workspace,
-                                    const State& state, Index node) {
+[[noreturn]] void report_divergence(const Model& model, const State& state, Index node,
+                                    Workspace& workspace) {
   std::string spring;
+  if (workspace.packed) compute_spring_forces(model, state, workspace);
   const Index s = suspect_spring(model, workspace, node);
   if (s >= 0) {
     spring = fmt::format("; its spring {} ({} to {}, k = {:.4g} N/m, l0 = {:.4g} m) pulled hardest",
@@ -191,7 +193,7 @@ VerletReport verlet_step(const Model& model, double h, State& state, Workspace& 
   if (report.righted > 0) {
     state.energy.work_in += measure_energies(model, state, workspace).total() - energy;
   }
-  if (broken != none) report_divergence(model, workspace, state, broken);
+  if (broken != none) report_divergence(model, state, broken, workspace);
   return report;
 }
 
