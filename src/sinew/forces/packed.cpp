@@ -5,10 +5,12 @@
 #include <numeric>
 
 #include "sinew/base/parallel.h"
+#include "sinew/forces/volume_law.h"
 
 namespace sinew {
 namespace {
 
+constexpr double low_ratio = guard_threshold + guard_margin;  // v/V
 constexpr Index most_nodes = 512;  // of a patch: with its slots and forces it stays in the L1 cache
 
 // Cuts the nodes across their longest side at the median, and again, until they are few enough.
@@ -181,9 +183,11 @@ void PackedForces::pack_tets(const Model& model, const std::vector<Index>& tets,
     const std::size_t data = tet_data_.size();
     tet_corner_.resize(corner + 4 * uz(packed_lanes), 0);
     tet_data_.resize(data + uz(packed_tet_fields * packed_lanes), 0.0f);
+    tet_id_.resize(tet_id_.size() + uz(packed_lanes), -1);
     for (std::size_t lane = 0; lane < uz(packed_lanes) && first + lane < tets.size(); ++lane) {
       const auto t = uz(tets[first + lane]);
       const Tet& tet = model.tets[t];
+      tet_id_[tet_id_.size() - uz(packed_lanes) + lane] = tets[first + lane];
       const auto put = [&](Index field, double value) {
         tet_data_[data + uz(field * packed_lanes) + lane] = static_cast<float>(value);
       };
@@ -329,8 +333,23 @@ double PackedForces::compute(const Model& model, const State& state) {
                                          slot_velocity_.data() + 4 * patch.slots.begin, force);
     }
   });
-  smallest_ratio_ = *std::min_element(smallest.begin(), smallest.end());
+  low_tets_.clear();
+  for (std::size_t p = 0; p < patches_.size(); ++p) {
+    if (smallest[p] < static_cast<float>(low_ratio)) find_low_tets(patches_[p]);
+  }
   return std::accumulate(heat.begin(), heat.end(), 0.0);
+}
+
+void PackedForces::find_low_tets(const Patch& patch) {
+  for (auto g = uz(patch.tets.begin); g < uz(patch.tets.end); ++g) {
+    const float* inverse_volume = tet_data_.data() + uz(packed_lanes) * (g * packed_tet_fields + 9);
+    for (std::size_t lane = 0; lane < uz(packed_lanes); ++lane) {
+      const std::size_t k = uz(packed_lanes) * g + lane;
+      if (!(1.0f + tet_change_[k] * inverse_volume[lane] >= static_cast<float>(low_ratio))) {
+        low_tets_.push_back(tet_id_[k]);
+      }
+    }
+  }
 }
 
 void PackedForces::gather(Range nodes, std::span<Vec3> force) const {

@@ -31,8 +31,9 @@ class PackedForces {
   // force[i] = what network, volume terms and springs do to node i [N], for the nodes of the range.
   void gather(Range nodes, std::span<Vec3> force) const;
 
-  // The smallest v/V of any tet that compute() saw [-]; 1 where no tet acts.
-  float smallest_ratio() const { return smallest_ratio_; }
+  // The tets that compute() saw below half of their volume: those that the guard pushes, or may
+  // push within a step.
+  const std::vector<Index>& low_tets() const { return low_tets_; }
 
  private:
   struct Patch {
@@ -43,6 +44,7 @@ class PackedForces {
   class Slots;
   void pack_tets(const Model& model, const std::vector<Index>& tets, Slots& slots);
   void pack_springs(const Model& model, const std::vector<Index>& springs, Slots& slots);
+  void find_low_tets(const Patch& patch);
   void list_slots(const Model& model);
   void pack_network(const Model& model);
   PackedTets tets_of(const Patch& patch) const;
@@ -57,6 +59,7 @@ class PackedForces {
   std::vector<Index> cell_slot_;           // increasing for each cell
   std::vector<float> cell_stiffness_;      // kappa_c / V_c [Pa/m3] (cells)
   std::vector<std::uint16_t> tet_corner_;  // 4 x slot, counted from the patch's first (32 a group)
+  std::vector<Index> tet_id_;              // (8 a group) -1: none
   std::vector<float> tet_data_;            // packed_tet_fields x 8 a group
   std::vector<std::uint16_t> spring_end_;  // as tet_corner_ (16 a group)
   std::vector<float> spring_data_;         // packed_spring_fields x 8 a group
@@ -74,7 +77,7 @@ class PackedForces {
   std::vector<float> slot_force_;         // (slots) the fourth: its share of its cell's change [m3]
   std::vector<float> tet_change_;         // v - V [m3] (8 a group)
   std::vector<float> cell_pressure_;      // (cells)
-  float smallest_ratio_ = 1.0f;
+  std::vector<Index> low_tets_;
 };
 
 }  // namespace sinew

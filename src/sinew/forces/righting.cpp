@@ -6,6 +6,7 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/network.h"
+#include "sinew/forces/packed.h"
 #include "sinew/forces/volume.h"
 
 namespace sinew {
@@ -45,23 +46,30 @@ Vec3 mean_velocity(const Model& model, const State& state, const Body& body) {
 
 int find_tangled(const Model& model, Workspace& workspace) {
   workspace.tangled.assign(model.bodies.size(), 0);
-  if (!model.has_volume || !workspace.has_tets) return 0;
+  if (!model.has_volume) return 0;
+  const auto inverted_in = [&](std::size_t t) {
+    const bool kept = model.tet_shear[t] > 0.0 || model.tet_bulk[t] > 0.0 || model.cells[t][0] >= 0;
+    return kept && workspace.tet_volume[t] <= 0.0 ? 1 : 0;
+  };
   int tangled = 0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Range tets = model.bodies[b].tets;
     const auto first = uz(tets.begin);
-    const Index inverted = parallel_reduce(
-        tets.size(), Index{0},
-        [&](Range r) {
-          Index count = 0;
-          for (auto k = uz(r.begin); k < uz(r.end); ++k) {
-            const bool kept = model.tet_shear[first + k] > 0.0 || model.tet_bulk[first + k] > 0.0 ||
-                              model.cells[first + k][0] >= 0;
-            count += kept && workspace.tet_volume[first + k] <= 0.0 ? 1 : 0;
-          }
-          return count;
-        },
-        [](Index a, Index c) { return a + c; });
+    Index inverted = 0;
+    if (!workspace.has_tets) {
+      for (const Index t : workspace.packed->low_tets()) {
+        if (tets.contains(t)) inverted += inverted_in(uz(t));
+      }
+    } else {
+      inverted = parallel_reduce(
+          tets.size(), Index{0},
+          [&](Range r) {
+            Index count = 0;
+            for (auto k = uz(r.begin); k < uz(r.end); ++k) count += inverted_in(first + k);
+            return count;
+          },
+          [](Index a, Index c) { return a + c; });
+    }
     if (inverted > tangled_share * tets.size()) {
       workspace.tangled[b] = 1;
       ++tangled;

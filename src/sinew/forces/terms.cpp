@@ -8,7 +8,6 @@
 #include "sinew/forces/springs.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
-#include "sinew/forces/volume_law.h"
 #include "sinew/mesh/tet_mesh.h"
 
 namespace sinew {
@@ -32,12 +31,11 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
   const bool packed = workspace.packed != nullptr;
   if (packed) {
     power = workspace.packed->compute(model, state);
-    workspace.has_tets = workspace.packed->smallest_ratio() < guard_threshold + guard_margin;
+    compute_tet_geometry(model, state.position, workspace.packed->low_tets(), workspace);
+    workspace.has_tets = false;
   } else {
     power = compute_spring_forces(model, state, workspace);
-  }
-  if (model.has_volume && (!packed || workspace.has_tets)) {
-    compute_volume_pressures(model, state.position, workspace);
+    if (model.has_volume) compute_volume_pressures(model, state.position, workspace);
   }
   const bool viscous = !model.tet_viscosity.empty();
   if (viscous) {

@@ -6,6 +6,7 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/network.h"
+#include "sinew/forces/packed.h"
 #include "sinew/forces/volume_law.h"
 
 namespace sinew {
@@ -42,16 +43,19 @@ double mean_of_cells(const Model& model, std::size_t t, std::span<const double> 
 }
 
 // workspace.tet_volume and tet_gradient at x: v = e3 . (e1 x e2) / 6 is e3 . dv/dx_3.
+void compute_geometry_of(const Model& model, std::span<const Vec3> x, std::size_t t,
+                         Workspace& workspace) {
+  const Tet& tet = model.tets[t];
+  const Vec3& x0 = x[uz(tet[0])];
+  const Vec3 e3 = x[uz(tet[3])] - x0;
+  const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, e3);
+  workspace.tet_volume[t] = e3.dot(g[3]);
+  workspace.tet_gradient[t] = g;
+}
+
 void compute_tet_geometry(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
-  parallel_for(model.tet_count(), [&](Index i) {
-    const auto t = uz(i);
-    const Tet& tet = model.tets[t];
-    const Vec3& x0 = x[uz(tet[0])];
-    const Vec3 e3 = x[uz(tet[3])] - x0;
-    const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, e3);
-    workspace.tet_volume[t] = e3.dot(g[3]);
-    workspace.tet_gradient[t] = g;
-  });
+  parallel_for(model.tet_count(),
+               [&](Index t) { compute_geometry_of(model, x, uz(t), workspace); });
 }
 
 // workspace.tet_rate: what u changes every tet's volume by, to first order.
@@ -159,6 +163,11 @@ void finish_volume_terms(Model& model) {
   }
   list(model.rest_position.size(), model.tets, model.tet_start, model.node_tet,
        [](std::size_t t, std::size_t a) { return static_cast<Index>(4 * t + a); });
+}
+
+void compute_tet_geometry(const Model& model, std::span<const Vec3> x, std::span<const Index> tets,
+                          Workspace& workspace) {
+  for (const Index t : tets) compute_geometry_of(model, x, uz(t), workspace);
 }
 
 void compute_volume_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
@@ -281,7 +290,6 @@ void press_cells(const Model& model, std::span<const double> weight, Workspace& 
 }
 
 double guard_frequency2(const Model& model, const Workspace& workspace) {
-  if (!workspace.has_tets) return 0.0;
   const auto of_tet = [&](std::size_t t) {
     const double rest = model.rest_volume[t];
     const double ratio = workspace.tet_volume[t] / rest;
@@ -294,6 +302,11 @@ double guard_frequency2(const Model& model, const Workspace& workspace) {
     }
     return stiffness / rest * sum;
   };
+  if (!workspace.has_tets) {
+    double largest = 0.0;
+    for (const Index t : workspace.packed->low_tets()) largest = std::max(largest, of_tet(uz(t)));
+    return largest;
+  }
   return parallel_reduce(
       model.tet_count(), 0.0,
       [&](Range r) {

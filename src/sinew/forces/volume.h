@@ -40,6 +40,10 @@ inline Vec3 press_tets(const Model& model, const Workspace& workspace, std::span
 // forces are made of (push_of_tets), and that the products below expect.
 void compute_volume_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace);
 
+// Only tet_volume and tet_gradient, and of these tets alone.
+void compute_tet_geometry(const Model& model, std::span<const Vec3> x, std::span<const Index> tets,
+                          Workspace& workspace);
+
 // -sum_t s_t dv_t/dx_i over the node's tets in their fixed order: the force on it [N].
 inline Vec3 push_of_tets(const Model& model, const Workspace& workspace, Index node) {
   return -press_tets(model, workspace, workspace.tet_pressure, node);
@@ -90,7 +94,8 @@ inline Vec3 gather_tets(const Model& model, const Workspace& workspace, Index no
 // Square of the highest angular frequency [1/s2] that the guard adds: the largest g/V sum_a
 // |dv/dx_a|^2 / m_a over the tets that it acts on, or that are about to come under it (0 where
 // there is none). Expects workspace.tet_volume and tet_gradient of the step before: the guard sets
-// in too fast for the explicit stepper to wait until the stable step is looked at.
+// in too fast for the explicit stepper to wait until the stable step is looked at. With packed
+// forces: over the tets that they found low.
 double guard_frequency2(const Model& model, const Workspace& workspace);
 
 // Largest |J_c - 1| over the node cells [-]; 0 where there are none.
