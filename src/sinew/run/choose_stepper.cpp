@@ -29,6 +29,7 @@ void right(const Model& model, Workspace& workspace, State& state) {
 }
 
 struct Trial {
+  double steps = 0.0;     // a frame
   double newton = 0.0;    // Newton steps a frame
   double products = 0.0;  // Hessian products a frame
   double work = 0.0;      // of a frame, in steps of Verlet
@@ -50,10 +51,10 @@ std::optional<Trial> try_implicit(const Model& model, const Contest& contest,
     if (error.kind() != ErrorKind::diverged) throw;
     return std::nullopt;
   }
-  const double per_frame = contest.interval / (trial_steps * contest.implicit_step);
-  trial.newton *= per_frame;
-  trial.products *= per_frame;
-  trial.work = newton_cost * trial.newton + product_cost * trial.products;
+  trial.steps = contest.interval / contest.implicit_step;
+  trial.newton *= trial.steps / trial_steps;
+  trial.products *= trial.steps / trial_steps;
+  trial.work = step_cost * trial.steps + newton_cost * trial.newton + product_cost * trial.products;
   return trial;
 }
 
