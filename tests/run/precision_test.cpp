@@ -1,0 +1,70 @@
+// precision = "single" against "double".
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "sinew/base/parallel.h"
+#include "sinew/run/run.h"
+
+namespace sinew {
+namespace {
+
+const char* block = R"(
+duration = 0.2
+[output]
+checkpoint = 0
+vtu = false
+[body.block]
+shape = "box"
+size = [0.1, 0.1, 0.2]
+cells = [4, 4, 8]
+young = 2e4
+[pin.wall]
+select = { side = "-z" }
+[pin.hand]
+select = { side = "+z" }
+path = [{ time = 0.1, move = [0.02, 0, -0.09], turn = [0, 0, 60] }]
+[probe.middle]
+select = { nearest = [0, 0, 0.1] }
+)";
+
+Summary run_of(const std::vector<std::string>& overrides) {
+  const RunResult result = run_scene(parse_scene(block, "block.toml", ".", overrides), {});
+  EXPECT_EQ(result.status, RunStatus::finished);
+  return result.summary;
+}
+
+TEST(Precision, SingleFollowsDouble) {
+  for (const char* law : {"block.law=neo-hookean", "block.law=lloyd"}) {
+    const Summary one = run_of({law, "precision=single"});
+    const Summary two = run_of({law, "precision=double"});
+    EXPECT_EQ(one.precision, "single");
+    EXPECT_EQ(two.precision, "double");
+    const Vec3 way = two.probes[0].displacement;
+    EXPECT_LT((one.probes[0].displacement - way).norm(), 1e-3 * way.norm()) << law;
+    EXPECT_NEAR(one.energy.total(), two.energy.total(), 1e-4 * two.energy.work_in) << law;
+  }
+}
+
+TEST(Precision, SingleIsTheSameBitsOnAnyNumberOfThreads) {
+  const auto hash = [](int threads) {
+    const ThreadLimit limit(threads);
+    return run_of({"precision=single", "duration=0.1"}).state_hash;
+  };
+  EXPECT_EQ(hash(1), hash(2));
+}
+
+TEST(Precision, SingleRightsATangledBody) {
+  const Summary one = run_of({"precision=single", "block.start=inverted"});
+  const Summary two = run_of({"precision=double", "block.start=inverted"});
+  EXPECT_GT(one.righting_steps, 0);
+  EXPECT_EQ(one.righting_steps, two.righting_steps);
+  EXPECT_EQ(one.inverted_tets, two.inverted_tets);
+}
+
+TEST(Precision, ImplicitStepsStayInDouble) {
+  EXPECT_EQ(run_of({"precision=single", "stepper=implicit", "duration=0.05"}).precision, "double");
+}
+
+}  // namespace
+}  // namespace sinew
