@@ -11,6 +11,7 @@
 #include "sinew/base/hash.h"
 #include "sinew/base/parallel.h"
 #include "sinew/forces/limits.h"
+#include "sinew/forces/packed.h"
 #include "sinew/forces/springs.h"
 #include "sinew/scene/build.h"
 #include "sinew/solver/implicit.h"
@@ -89,6 +90,23 @@ void ImplicitStep(benchmark::State& state) {
 // The network law at E [kPa] and nu = 0.45, from rest.
 Model network_beam(std::int64_t k, std::int64_t kilopascals) {
   return model_of(k, {"beam.law=neo-hookean", fmt::format("beam.young={}e3", kilopascals)});
+}
+
+// Verlet's step of the network law without dashpots, in double (range(1) = 0) and single precision.
+void NetworkStep(benchmark::State& state) {
+  const ThreadLimit limit(static_cast<int>(state.range(2)));
+  const Model model =
+      model_of(state.range(0), {"beam.law=neo-hookean", "beam.damping_ratio=0", "beam.drag=5"});
+  Workspace workspace(model);
+  State s = initial_state(model);
+  const double h = 0.5 * find_stable_step(model, s.position, workspace).step;
+  if (state.range(1) == 1) workspace.packed = std::make_shared<PackedForces>(model);
+  for (int i = 0; i < 20; ++i) verlet_step(model, h, s, workspace);
+  state.SetLabel("state after 20 steps " + hex(s.hash()));
+  for (auto _ : state) verlet_step(model, h, s, workspace);
+  state.counters["per_tet"] = benchmark::Counter(
+      static_cast<double>(state.iterations()) * static_cast<double>(model.tet_count()),
+      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
 }
 
 // Gravity on W(k) to a residual of 0.1, which leaves 0.1 % of the tip's way.
@@ -183,6 +201,7 @@ BENCHMARK(MachineCopy)->Arg(256)->Arg(8 << 10)->Arg(256 << 10);  // KiB: L2, L3,
 BENCHMARK(MachineMultiplyAdd);
 BENCHMARK(SpringForces)->Arg(4)->Arg(8)->Arg(17)->Arg(0);
 BENCHMARK(VerletStep)->ArgsProduct({{4, 8, 17, 0}, {1, 2}})->UseRealTime();
+BENCHMARK(NetworkStep)->ArgsProduct({{4, 8, 17, 37}, {0, 1}, {1, 2}})->UseRealTime();
 BENCHMARK(ImplicitStep)->ArgsProduct({{4, 8, 0}, {1, 3, 6}})->Unit(benchmark::kMillisecond);
 BENCHMARK(StaticSolve)->Arg(4)->Arg(8)->Arg(17)->Unit(benchmark::kMillisecond);
 BENCHMARK(ImplicitFrame)
