@@ -342,7 +342,8 @@ double PackedForces::compute(const Model& model, const State& state) {
 
 void PackedForces::find_low_tets(const Patch& patch) {
   for (auto g = uz(patch.tets.begin); g < uz(patch.tets.end); ++g) {
-    const float* inverse_volume = tet_data_.data() + uz(packed_lanes) * (g * packed_tet_fields + 9);
+    const float* inverse_volume =
+        tet_data_.data() + uz(packed_lanes) * (g * uz(packed_tet_fields) + 9);
     for (std::size_t lane = 0; lane < uz(packed_lanes); ++lane) {
       const std::size_t k = uz(packed_lanes) * g + lane;
       if (!(1.0f + tet_change_[k] * inverse_volume[lane] >= static_cast<float>(low_ratio))) {
