@@ -57,7 +57,8 @@ class StaticSolver {
   // only the ground holds is put down on it first, straight along its normal, and then keeps its
   // place along the ground as nearly as it can.
   //
-  // Where Newton's method does not get through, pins and loads are brought on in smaller steps.
+  // Where Newton's method does not get through, pins and loads are brought on in smaller steps, and
+  // after two cuts the body is followed, once, as it falls to rest.
   // Throws Error(input) where a body has nothing to hold it against the forces on it, and
   // Error(diverged) where no rest state is found.
   StaticReport solve(double time, const StaticOptions& options, State& state);
