@@ -229,7 +229,7 @@ void PackedForces::pack_springs(const Model& model, const std::vector<Index>& sp
       const auto [i, j] = model.springs[s];
       const Vec3 x = model.rest_position[uz(j)] - model.rest_position[uz(i)];
       const double l0 = model.rest_length[s];
-      for (const std::size_t e : {0, 1}) {
+      for (std::size_t e = 0; e < 2; ++e) {
         const Index node = model.springs[s][e];
         spring_end_[end + e * uz(packed_lanes) + lane] = slots.of(node);
       }
