@@ -13,7 +13,14 @@ LinearSolver::LinearSolver(const Model& model)
       z_(r_),
       d_(r_),
       q_(r_),
-      p_(r_) {}
+      p_(r_) {
+  for (std::size_t t = 0; t < model.tets.size(); ++t) {
+    const double side = std::cbrt(model.rest_volume[t]);
+    const double resistance = model.tet_modulus[t] * side;
+    resistance2_ += resistance * resistance;
+    pull2_ += resistance * resistance * side * side;
+  }
+}
 
 void LinearSolver::factor(const Objective& objective, Workspace& workspace) {
   if (is_factored(objective)) return;

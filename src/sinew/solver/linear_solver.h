@@ -28,6 +28,11 @@ class LinearSolver {
   // the same (Steihaug 1983). Returns the products taken.
   int solve(const Field& r, double forcing, int most, const Deadline& deadline, Field& p);
 
+  // What the tets can pull and resist with, as sums over them of (mu V^(2/3))^2 [N2] and of
+  // (mu V^(1/3))^2 [N2/m2].
+  double pull2() const { return pull2_; }
+  double resistance2() const { return resistance2_; }
+
  private:
   bool is_factored(const Objective& objective) const;
 
@@ -35,6 +40,8 @@ class LinearSolver {
   TwoLevel preconditioner_;
   const Model* factored_model_ = nullptr;  // what preconditioner_ was factored for
   float factored_inertia_ = -1.0f;
+  double pull2_ = 0.0;
+  double resistance2_ = 0.0;
   Field4 r_, z_, d_, q_, p_;  // residual, P^-1 r, direction, K d, solution
 };
 

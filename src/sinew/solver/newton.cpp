@@ -67,18 +67,9 @@ void damping_times(const Objective& objective, const Field& u, Workspace& worksp
                           out);
 }
 
-// Sum over the tets of what the material pulls with at a strain of 1e-5, squared [N2].
-double material_pull2(const Model& model) {
-  return parallel_sum(model.tet_count(), [&](Index t) {
-    const double side = std::cbrt(model.rest_volume[uz(t)]);
-    const double pull = 1e-5 * model.tet_modulus[uz(t)] * side * side;
-    return pull * pull;
-  });
-}
-
 // What is left of digits in a force that rests: a unit in the last place of the positions times
 // what a node resists with, over all nodes [N].
-double rounding_force(const Objective& objective, const State& state) {
+double rounding_force(const Objective& objective, const LinearSolver& linear, const State& state) {
   const Model& model = objective.model;
   double far = 0.0;
   for (const Vec3& x : state.position) far = std::max(far, x.cwiseAbs().maxCoeff());
@@ -86,14 +77,11 @@ double rounding_force(const Objective& objective, const State& state) {
     const double k = objective.inertia * model.mass[uz(i)];
     return model.inverse_mass[uz(i)] == 0.0 ? 0.0 : k * k;
   });
-  const double material = parallel_sum(model.tet_count(), [&](Index t) {
-    const double k = 4.0 * model.tet_modulus[uz(t)] * std::cbrt(model.rest_volume[uz(t)]);
-    return k * k;
-  });
+  const double material = 16.0 * linear.resistance2();
   return std::numeric_limits<double>::epsilon() * far * std::sqrt(inertial + material);
 }
 
-// See minimise(). material: of material_pull2.
+// See minimise(). material: what the tets pull with at a strain of 1e-5, squared [N2].
 double carried(const Objective& objective, double material, const State& state,
                const Workspace& workspace) {
   const Model& model = objective.model;
@@ -243,8 +231,8 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
                       const NewtonOptions& options, Workspace& workspace, State& state) {
   NewtonReport report;
   const Reach reach(objective.model, state);
-  const double material = material_pull2(objective.model);
-  const double rounding = rounding_force(objective, state);
+  const double material = 1e-10 * linear.pull2();
+  const double rounding = rounding_force(objective, linear, state);
   const Clock::time_point start = Clock::now();
   Field f = objective_force(objective, state, workspace);
   Deadline deadline = options.deadline;

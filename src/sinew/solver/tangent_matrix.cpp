@@ -68,6 +68,18 @@ Mat3 definite(const Mat3& m) {
   return (mean > 0.0 ? mean : 1.0) * Mat3::Identity();
 }
 
+// As dashpot_block in spring_law.h.
+Block3 dashpot(const Float4& x, float c) {
+  Block3 block;
+  const float length2 = x.dot(x);
+  const float scale = length2 > 0.0f ? c / length2 : 0.0f;
+  const float alone = length2 > 0.0f ? 0.0f : c;
+  block.column = {scale * x.lanes[0] * x + Float4(alone, 0.0f, 0.0f),
+                  scale * x.lanes[1] * x + Float4(0.0f, alone, 0.0f),
+                  scale * x.lanes[2] * x + Float4(0.0f, 0.0f, alone)};
+  return block;
+}
+
 }  // namespace
 
 TangentMatrix::TangentMatrix(const Model& model) : model_(model) {
@@ -118,9 +130,13 @@ void TangentMatrix::find_edges() {
     const bool even = tet[p.a] < tet[p.b];
     edge_tets_.push_back({k / 6, tet[even ? p.c : p.d], tet[even ? p.d : p.c]});
   }
+  edge_dashpot_.assign(edges_.size(), 0.0);
   std::vector<Index> of_spring;
   for (std::size_t s = 0; s < model_.springs.size(); ++s) {
     of_spring.push_back(acts(model_, s) ? edge_of(model_.springs[s][0], model_.springs[s][1]) : -1);
+    if (of_spring[s] < 0 || model_.stiffness[s] > 0.0 || limited_[s] >= 0) continue;
+    edge_dashpot_[uz(of_spring[s])] += model_.damping[s];  // a dashpot alone
+    of_spring[s] = -1;
   }
   sort_by_key(
       edges_.size(), static_cast<Index>(of_spring.size()),
@@ -254,6 +270,13 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
   parallel_for(viscous ? model.viscous_cell_count() : 0, [&](Index cell) {
     viscous_deformation_[uz(cell)] = viscous_deformation(model, *objective.lag, cell);
   });
+  const bool dashpots = objective.rate > 0.0;
+  if (dashpots) {
+    const Field& lag = *objective.lag;
+    lag_.resize(free_.size());
+    parallel_for(model.node_count(),
+                 [&](Index i) { lag_[uz(i)] = Float4(Vec3(lag[uz(i)] - lag[0])); });
+  }
   const bool springs = objective.rate > 0.0 || objective.constraints != nullptr || springs_pull_;
   parallel_for(model.node_count(),
                [&](Index i) { position_[uz(i)] = Float4(Vec3(x[uz(i)] - x[0])); });
@@ -273,6 +296,14 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
     std::array<Block3, 2> pair;  // B_ab and B_ba: k 1 + [turn]_x and its transpose
     pair[0].column = {Float4(k, w, -v), Float4(-w, k, u), Float4(v, -u, k)};
     pair[1].column = {Float4(k, -w, v), Float4(w, k, -u), Float4(-v, u, k)};
+    if (dashpots && edge_dashpot_[e] > 0.0) {
+      const Block3 more = dashpot(lag_[uz(edges_[e][1])] - lag_[uz(edges_[e][0])],
+                                  static_cast<float>(objective.rate * edge_dashpot_[e]));
+      for (std::size_t c = 0; c < 3; ++c) {
+        pair[0].column[c] += more.column[c];
+        pair[1].column[c] += more.column[c];
+      }
+    }
     if (rare) {
       const Mat3 more = rare_block(objective, x, workspace, e);
       for (int c = 0; c < 3; ++c) {

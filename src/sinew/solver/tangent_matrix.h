@@ -79,12 +79,14 @@ class TangentMatrix {
   std::vector<std::array<Index, 2>> edge_entries_;  // of B_ab and B_ba (edges)
   std::vector<Index> edge_tet_start_;               // (edges + 1)
   std::vector<AroundEdge> edge_tets_;
+  Field4 lag_;                             // objective.lag, about one of the nodes [m] (nodes)
   Field4 position_;                        // x, about one of the nodes [m] (nodes)
   std::vector<float> tet_push_;            // s_t / 6 [Pa] (tets)
   std::vector<double> tet_stiffness_;      // of tet_volume_stiffness [Pa] (tets)
   std::vector<Index> edge_viscous_start_;  // (edges + 1), empty where nothing is viscous
   std::vector<ViscousPair> edge_viscous_;
-  std::vector<Mat3> viscous_deformation_;                // F of the cells at objective.lag [-]
+  std::vector<Mat3> viscous_deformation_;  // F of the cells at objective.lag [-]
+  std::vector<double> edge_dashpot_;       // [N s/m] of the springs that are nothing else (edges)
   std::vector<Index> edge_spring_start_, edge_springs_;  // spring ids (edges + 1)
 
   bool springs_pull_ = false;   // some spring has a stiffness
