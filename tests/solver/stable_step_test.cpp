@@ -6,6 +6,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/solver/verlet.h"
+#include "tests/support/effort.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -86,7 +87,9 @@ TEST(StableStep, IsSharpOnTissueWithAndWithoutDamping) {
 
 TEST(StableStep, IsSharpOnViscousTissue) {
   for (const double zeta : {0.05, 0.2, 1.0}) {
-    Model m = tissue_box({.damping = Damping::material, .damping_ratio = zeta}, {3, 3, 3});
+    if (test::sanitized && zeta != 0.05) continue;
+    const Index k = test::sanitized ? 2 : 3;
+    Model m = tissue_box({.damping = Damping::material, .damping_ratio = zeta}, {k, k, k});
     m.gravity = Vec3::Zero();
     m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
     finish(m);

@@ -108,6 +108,7 @@ TEST(Viscosity, DampsShearAlikeOnEveryMesh) {
 }
 
 TEST(Viscosity, IsTheSameToBothSteppers) {
+  if (test::sanitized) return;  // thousands of steps of what the other tests run, too
   const Material material = viscous(0.2);
   const Model m = bar(material, 2);
   const std::vector<Vec3> shape = torsion(m);

@@ -25,7 +25,8 @@ double dot(const Field& a, const Field& b) {
 
 // Vectors that nothing in the mesh favours.
 std::vector<Field> start_block(const Model& model, int size) {
-  std::vector<Field> block(static_cast<std::size_t>(size), Field(model.rest_position.size()));
+  const Field zero(model.rest_position.size(), Vec3::Zero());
+  std::vector<Field> block(static_cast<std::size_t>(size), zero);
   std::uint64_t n = 0;
   for (Field& u : block)
     for (std::size_t i = 0; i < u.size(); ++i, ++n)
