@@ -16,8 +16,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most eight lanes, and no fused multiply-adds, so that every instruction set gives the same
-// bits.
+// At most eight lanes, and no fused multiply-adds: AVX2 and AVX-512 give the same bits. Where lanes
+// are four, tets of a group that share a node add to it in another order.
 using Lanes = hn::CappedTag<float, packed_lanes>;
 using V = hn::Vec<Lanes>;
 using Four = hn::FixedTag<float, 4>;
