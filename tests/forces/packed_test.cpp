@@ -2,6 +2,7 @@
 #include "sinew/forces/packed.h"
 
 #include <gtest/gtest.h>
+#include <hwy/highway.h>
 
 #include <cmath>
 #include <random>
@@ -137,6 +138,22 @@ TEST(PackedForces, AreTheSameBitsOnAnyNumberOfThreads) {
     return packed(m, s);
   };
   EXPECT_EQ(on(1), on(2));
+}
+
+TEST(PackedForces, AreTheSameBitsWithEveryInstructionSet) {
+  for (const Law law : {Law::neo_hookean, Law::lloyd}) {
+    const Model m = bar({material(law, 1e5, 0.45)}, 6);
+    const State s = moved(m, 2e-3);
+    const std::vector<Vec3> best = packed(m, s);
+    std::int64_t left = hwy::SupportedTargets() & (HWY_SSSE3 | HWY_SSE4 | HWY_AVX2 | HWY_AVX3);
+    for (; left != 0; left &= left - 1) {
+      hwy::SetSupportedTargetsForTest(left & -left);
+      hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+      EXPECT_EQ(packed(m, s), best) << hwy::TargetName(left & -left);
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  }
 }
 
 }  // namespace

@@ -16,8 +16,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// At most eight lanes, and no fused multiply-adds: AVX2 and AVX-512 give the same bits. Where lanes
-// are four, tets of a group that share a node add to it in another order.
+// At most eight lanes, one order of every sum, and no fused multiply-adds, so that every
+// instruction set gives the same bits.
 using Lanes = hn::CappedTag<float, packed_lanes>;
 using V = hn::Vec<Lanes>;
 using Four = hn::FixedTag<float, 4>;
@@ -92,8 +92,11 @@ HWY_INLINE void add_row(D d, float* base, const std::uint16_t* index, std::size_
   }
 }
 
-// The way back: adds a vector to each of the slots.
-HWY_INLINE void add(const V3& f, float* base, const std::uint16_t* index) {
+// The way back, as rows: f.x f.y f.z 0 of each of the slots.
+struct Rows {
+  V k[4];
+};
+HWY_INLINE Rows rows_of(const V3& f) {
   const Lanes d;
   const hn::Repartition<double, Lanes> wide;
   const V zero = hn::Zero(d);
@@ -101,10 +104,31 @@ HWY_INLINE void add(const V3& f, float* base, const std::uint16_t* index) {
   const auto xy23 = hn::BitCast(wide, hn::InterleaveUpper(d, f.x, f.y));
   const auto z01 = hn::BitCast(wide, hn::InterleaveLower(d, f.z, zero));
   const auto z23 = hn::BitCast(wide, hn::InterleaveUpper(d, f.z, zero));
-  add_row(d, base, index, 0, hn::BitCast(d, hn::InterleaveLower(wide, xy01, z01)));
-  add_row(d, base, index, 1, hn::BitCast(d, hn::InterleaveUpper(wide, xy01, z01)));
-  add_row(d, base, index, 2, hn::BitCast(d, hn::InterleaveLower(wide, xy23, z23)));
-  add_row(d, base, index, 3, hn::BitCast(d, hn::InterleaveUpper(wide, xy23, z23)));
+  return {{hn::BitCast(d, hn::InterleaveLower(wide, xy01, z01)),
+           hn::BitCast(d, hn::InterleaveUpper(wide, xy01, z01)),
+           hn::BitCast(d, hn::InterleaveLower(wide, xy23, z23)),
+           hn::BitCast(d, hn::InterleaveUpper(wide, xy23, z23))}};
+}
+
+// The vectors of a group of eight, in one part or in two.
+struct Group {
+  V3 part[packed_lanes / step];
+};
+
+// Adds them to their slots in the order 0 4 1 5 2 6 3 7, however many lanes there are: items of a
+// group may share a slot.
+HWY_INLINE void add(const Group& f, float* base, const std::uint16_t* index) {
+  const Lanes d;
+  const Rows low = rows_of(f.part[0]);
+  if (step == packed_lanes) {
+    for (std::size_t k = 0; k < 4; ++k) add_row(d, base, index, k, low.k[k]);
+    return;
+  }
+  const Rows high = rows_of(f.part[packed_lanes / step - 1]);
+  for (std::size_t k = 0; k < 4; ++k) {
+    add_row(d, base, index, k, low.k[k]);
+    add_row(d, base, index + 4, k, high.k[k]);
+  }
 }
 
 // Eight of a field, from the lane on.
@@ -159,7 +183,9 @@ float tet_forces(const PackedTets& tets, const float* u, const float* change, fl
   for (Index g = 0; g < tets.groups; ++g) {
     const std::uint16_t* corner = tets.corner + 4 * packed_lanes * g;
     const float* data = tets.data + packed_tet_fields * packed_lanes * g;
+    Group f0, f1, f2, f3;
     for (std::size_t lane = 0; lane < packed_lanes; lane += step) {
+      const std::size_t part = lane / step;
       const Quad q0 = load(u, corner + lane);
       const Quad q1 = load(u, corner + packed_lanes + lane);
       const Quad q2 = load(u, corner + 2 * packed_lanes + lane);
@@ -196,16 +222,16 @@ float tet_forces(const PackedTets& tets, const float* u, const float* change, fl
       const V3 b1 = minus(scale(s, e1), scale(mu, d1));
       const V3 b2 = minus(scale(s, e2), scale(mu, d2));
       const V3 b3 = minus(scale(s, e3), scale(mu, d3));
-      const V3 f1 = minus(cross(b2, e3), scale(mu, cross(E2, d3)));
-      const V3 f2 = minus(cross(b3, e1), scale(mu, cross(E3, d1)));
-      const V3 f3 = minus(cross(b1, e2), scale(mu, cross(E1, d2)));
-      const V3 sum = plus(plus(f1, f2), f3);
-      const V3 f0 = {hn::Neg(sum.x), hn::Neg(sum.y), hn::Neg(sum.z)};
-      add(f0, force, corner + lane);
-      add(f1, force, corner + packed_lanes + lane);
-      add(f2, force, corner + 2 * packed_lanes + lane);
-      add(f3, force, corner + 3 * packed_lanes + lane);
+      f1.part[part] = minus(cross(b2, e3), scale(mu, cross(E2, d3)));
+      f2.part[part] = minus(cross(b3, e1), scale(mu, cross(E3, d1)));
+      f3.part[part] = minus(cross(b1, e2), scale(mu, cross(E1, d2)));
+      const V3 sum = plus(plus(f1.part[part], f2.part[part]), f3.part[part]);
+      f0.part[part] = {hn::Neg(sum.x), hn::Neg(sum.y), hn::Neg(sum.z)};
     }
+    add(f0, force, corner);
+    add(f1, force, corner + packed_lanes);
+    add(f2, force, corner + 2 * packed_lanes);
+    add(f3, force, corner + 3 * packed_lanes);
   }
   return hn::GetLane(hn::MinOfLanes(d, smallest));
 }
@@ -218,6 +244,7 @@ double spring_forces(const PackedSprings& springs, const float* u, const float* 
   for (Index g = 0; g < springs.groups; ++g) {
     const std::uint16_t* end = springs.end + 2 * packed_lanes * g;
     const float* data = springs.data + packed_spring_fields * packed_lanes * g;
+    Group on_low, on_high;
     for (std::size_t lane = 0; lane < packed_lanes; lane += step) {
       const std::uint16_t* low = end + lane;
       const std::uint16_t* high = end + packed_lanes + lane;
@@ -237,10 +264,12 @@ double spring_forces(const PackedSprings& springs, const float* u, const float* 
       const V pull = hn::Add(
           hn::Mul(hn::Mul(hn::Mul(field(data, 5, lane), grown), length), inverse2), dashpot);
       const V3 f = scale(pull, x);
-      add(f, force, low);
-      add({hn::Neg(f.x), hn::Neg(f.y), hn::Neg(f.z)}, force, high);
+      on_low.part[lane / step] = f;
+      on_high.part[lane / step] = {hn::Neg(f.x), hn::Neg(f.y), hn::Neg(f.z)};
       hn::StoreU(hn::Add(hn::LoadU(d, heat + lane), hn::Mul(dashpot, along)), d, heat + lane);
     }
+    add(on_low, force, end);
+    add(on_high, force, end + packed_lanes);
   }
   double sum = 0.0;
   for (const float h : heat) sum += static_cast<double>(h);

@@ -1,5 +1,5 @@
 // The loops of PackedForces over groups of eight tets or springs, for every instruction set that
-// the processor may have; AVX2 and AVX-512 give the same bits.
+// the processor may have; all give the same bits.
 #pragma once
 
 #include <cstdint>
