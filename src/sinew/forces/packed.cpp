@@ -5,38 +5,15 @@
 #include <numeric>
 
 #include "sinew/base/parallel.h"
+#include "sinew/base/sort_by_key.h"
 #include "sinew/forces/volume_law.h"
+#include "sinew/mesh/bisect.h"
 
 namespace sinew {
 namespace {
 
 constexpr double low_ratio = guard_threshold + guard_margin;  // v/V
 constexpr Index most_nodes = 512;  // of a patch: with its slots and forces it stays in the L1 cache
-
-// Cuts the nodes across their longest side at the median, and again, until they are few enough.
-void cut(const std::vector<Vec3>& x, std::span<Index> nodes, std::vector<std::span<Index>>& parts) {
-  if (static_cast<Index>(nodes.size()) <= most_nodes) {
-    if (!nodes.empty()) parts.push_back(nodes);
-    return;
-  }
-  Vec3 low = Vec3::Constant(no_limit);
-  Vec3 high = -low;
-  for (const Index i : nodes) {
-    low = low.cwiseMin(x[uz(i)]);
-    high = high.cwiseMax(x[uz(i)]);
-  }
-  Eigen::Index axis = 0;
-  (high - low).maxCoeff(&axis);
-  const std::size_t half = nodes.size() / 2;
-  std::nth_element(nodes.begin(), nodes.begin() + static_cast<std::ptrdiff_t>(half), nodes.end(),
-                   [&](Index a, Index b) {
-                     const double p = x[uz(a)][axis];
-                     const double q = x[uz(b)][axis];
-                     return p != q ? p < q : a < b;
-                   });
-  cut(x, nodes.first(half), parts);
-  cut(x, nodes.subspan(half), parts);
-}
 
 // The same items so that neighbours in the list are far apart: an item that adds to a node right
 // after another one has to wait for it.
@@ -52,21 +29,6 @@ std::vector<Index> spread(const std::vector<Index>& items) {
 
 Index groups_of(std::size_t items) {
   return (static_cast<Index>(items) + packed_lanes - 1) / packed_lanes;
-}
-
-// Offsets and lists: for each of `count` keys the slots that have it, in increasing order.
-void list(std::size_t count, const std::vector<Index>& key, std::vector<Index>& start,
-          std::vector<Index>& slot) {
-  start.assign(count + 1, 0);
-  for (const Index k : key) {
-    if (k >= 0) ++start[uz(k) + 1];
-  }
-  std::partial_sum(start.begin(), start.end(), start.begin());
-  slot.resize(uz(start.back()));
-  std::vector<Index> next(start.begin(), start.end() - 1);
-  for (std::size_t s = 0; s < key.size(); ++s) {
-    if (key[s] >= 0) slot[uz(next[uz(key[s])]++)] = static_cast<Index>(s);
-  }
 }
 
 void set_four(std::vector<float>& to, Index i, const Vec3& v) {
@@ -129,8 +91,7 @@ PackedForces::PackedForces(const Model& model) {
   const auto nodes = model.rest_position.size();
   std::vector<Index> order(nodes);
   std::iota(order.begin(), order.end(), 0);
-  std::vector<std::span<Index>> parts;
-  cut(model.rest_position, order, parts);
+  const std::vector<std::span<Index>> parts = bisect(model.rest_position, order, most_nodes);
   std::vector<Index> part_of(nodes);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     for (const Index i : parts[p]) part_of[uz(i)] = static_cast<Index>(p);
@@ -258,9 +219,14 @@ void PackedForces::pack_network(const Model& model) {
 }
 
 void PackedForces::list_slots(const Model& model) {
-  list(model.rest_position.size(), slot_node_, node_start_, node_slot_);
+  const auto slots = static_cast<Index>(slot_node_.size());
+  sort_by_key(
+      model.rest_position.size(), slots, [&](Index s) { return slot_node_[uz(s)]; }, node_start_,
+      node_slot_);
   if (!has_cells_) return;
-  list(uz(model.cell_count()), slot_cell_, cell_start_, cell_slot_);
+  sort_by_key(
+      uz(model.cell_count()), slots, [&](Index s) { return slot_cell_[uz(s)]; }, cell_start_,
+      cell_slot_);
   cell_pressure_.resize(uz(model.cell_count()));
   for (std::size_t c = 0; c < cell_pressure_.size(); ++c) {
     cell_stiffness_.push_back(static_cast<float>(model.cell_bulk[c] / model.cell_volume[c]));

@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <algorithm>
 
+#include "sinew/base/sort_by_key.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/viscosity.h"
@@ -19,23 +20,6 @@ struct Pair {
 };
 constexpr std::array<Pair, 6> tet_pairs = {
     {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
-
-// items[start[k] .. start[k + 1]) = the i in [0, count) with key(i) = k, in increasing order; those
-// with a negative key are left out.
-template <typename Key>
-void sort_by_key(std::size_t keys, Index count, const Key& key, std::vector<Index>& start,
-                 std::vector<Index>& items) {
-  start.assign(keys + 1, 0);
-  for (Index i = 0; i < count; ++i) {
-    if (key(i) >= 0) ++start[uz(key(i)) + 1];
-  }
-  for (std::size_t k = 1; k < start.size(); ++k) start[k] += start[k - 1];
-  items.resize(uz(start.back()));
-  std::vector<Index> next(start.begin(), start.end() - 1);
-  for (Index i = 0; i < count; ++i) {
-    if (key(i) >= 0) items[uz(next[uz(key(i))]++)] = i;
-  }
-}
 
 bool acts(const Model& model, std::size_t s) {
   return model.stiffness[s] > 0.0 || model.damping[s] > 0.0 || model.stretch_limit[s] < no_limit ||

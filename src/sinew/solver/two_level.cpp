@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <map>
 
+#include "sinew/mesh/bisect.h"
+
 namespace sinew {
 namespace {
 
@@ -16,33 +18,6 @@ constexpr Index most_groups = 200;
 // What keeps the coarse matrix of a body that nothing holds from being singular, as a share of its
 // diagonal.
 constexpr double touch = 1e-5;
-
-// Cuts a set of nodes across its longest side at the median, and again, until it is small enough.
-void cut(const Model& model, std::vector<Index> nodes, Index most,
-         std::vector<std::vector<Index>>& groups) {
-  if (static_cast<Index>(nodes.size()) <= most) {
-    groups.push_back(std::move(nodes));
-    return;
-  }
-  Vec3 low = Vec3::Constant(no_limit);
-  Vec3 high = -low;
-  for (const Index i : nodes) {
-    low = low.cwiseMin(model.rest_position[uz(i)]);
-    high = high.cwiseMax(model.rest_position[uz(i)]);
-  }
-  Eigen::Index axis = 0;
-  (high - low).maxCoeff(&axis);
-  const auto middle = nodes.begin() + static_cast<std::ptrdiff_t>(nodes.size() / 2);
-  std::nth_element(nodes.begin(), middle, nodes.end(), [&](Index a, Index b) {
-    const double p = model.rest_position[uz(a)][axis];
-    const double q = model.rest_position[uz(b)][axis];
-    return p != q ? p < q : a < b;
-  });
-  std::vector<Index> upper(middle, nodes.end());
-  nodes.erase(middle, nodes.end());
-  cut(model, std::move(nodes), most, groups);
-  cut(model, std::move(upper), most, groups);
-}
 
 // For every free node its body and the region whose tets hold it stiffest.
 std::map<std::pair<Index, int>, std::vector<Index>> nodes_by_region(const Model& model) {
@@ -79,7 +54,11 @@ TwoLevel::TwoLevel(const Model& model, Index group_size) : model_(model) {
   Index most = group_size;
   if (most == 0) most = std::max(smallest_group, model.node_count() / most_groups);
   std::vector<std::vector<Index>> groups;
-  for (auto& [region, nodes] : nodes_by_region(model)) cut(model, nodes, most, groups);
+  for (auto& [region, nodes] : nodes_by_region(model)) {
+    for (const std::span<Index> part : bisect(model.rest_position, nodes, most)) {
+      groups.emplace_back(part.begin(), part.end());
+    }
+  }
 
   group_.assign(model.rest_position.size(), -1);
   shape_.assign(model.rest_position.size(), Eigen::Vector4f::Zero());

@@ -1,0 +1,16 @@
+// Cutting a set of points into compact parts of about equal size.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/base/vec.h"
+
+namespace sinew {
+
+// Cuts the points (ids into x) across their longest side at the median, and each half again, until
+// no part has more than `most`; reorders `points` so that every part is contiguous. Recursive
+// coordinate bisection (Berger, Bokhari 1987). No parts of an empty set.
+std::vector<std::span<Index>> bisect(std::span<const Vec3> x, std::span<Index> points, Index most);
+
+}  // namespace sinew
