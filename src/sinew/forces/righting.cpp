@@ -115,6 +115,14 @@ std::vector<Vec3> rest_shape_at(const Model& model, const Body& body, std::span<
   return shape;
 }
 
+void put_tangled_bodies_at_rest(const Model& model, const Workspace& workspace, State& state) {
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    if (workspace.tangled[b] == 0) continue;
+    const std::vector<Vec3> shape = rest_shape_at(model, model.bodies[b], state.position);
+    std::copy(shape.begin(), shape.end(), state.position.begin() + model.bodies[b].nodes.begin);
+  }
+}
+
 void right_tangled_bodies(const Model& model, const State& state, double h, Workspace& workspace) {
   const std::vector<Vec3>& x = state.position;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {

@@ -27,6 +27,9 @@ int find_tangled(const Model& model, Workspace& workspace);
 // million times the rest together. [m] (nodes of the body)
 std::vector<Vec3> rest_shape_at(const Model& model, const Body& body, std::span<const Vec3> x);
 
+// Puts the bodies of workspace.tangled there. Sets positions, of held nodes too.
+void put_tangled_bodies_at_rest(const Model& model, const Workspace& workspace, State& state);
+
 // Replaces, on the free nodes of the bodies in workspace.tangled, the forces of network and volume
 // in workspace.force by  m w^2 (g_i - x_i) - 2 m w (v_i - v),  critically damped: g_i from
 // rest_shape_at, v the body's mean velocity (0 where it is held), w eight times what a shear wave

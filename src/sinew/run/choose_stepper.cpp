@@ -20,12 +20,7 @@ constexpr int trial_steps = 4;
 void right(const Model& model, Workspace& workspace, State& state) {
   if (!model.has_volume) return;
   compute_volume_pressures(model, state.position, workspace);
-  if (find_tangled(model, workspace) == 0) return;
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (workspace.tangled[b] == 0) continue;
-    const std::vector<Vec3> shape = rest_shape_at(model, model.bodies[b], state.position);
-    std::copy(shape.begin(), shape.end(), state.position.begin() + model.bodies[b].nodes.begin);
-  }
+  if (find_tangled(model, workspace) > 0) put_tangled_bodies_at_rest(model, workspace, state);
 }
 
 struct Trial {

@@ -271,11 +271,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
   refuse_unheld_bodies(model_, outer_forces(model_, state));
   compute_forces(model_, state, workspace_);
   if (find_tangled(model_, workspace_) > 0) {
-    for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      if (workspace_.tangled[b] == 0) continue;
-      const std::vector<Vec3> shape = rest_shape_at(model_, model_.bodies[b], state.position);
-      std::copy(shape.begin(), shape.end(), state.position.begin() + model_.bodies[b].nodes.begin);
-    }
+    put_tangled_bodies_at_rest(model_, workspace_, state);
     compute_forces(model_, state, workspace_);
   }
   if (nudge_ > 0.0) put_on_ground(model_, state);
