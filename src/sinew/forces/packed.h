@@ -1,19 +1,21 @@
 // The material's forces in single precision, laid out for SIMD: network, volume terms and springs
 // of a model. docs/methods/single-precision.md.
 //
-// Every term is written in the displacements u = x - X, so that nothing that cancels at rest is
-// ever summed: what is left of digits does not depend on how stiff the material is.
+// Every term is written in displacements u that leave out how the body has moved as a whole, so
+// that nothing that cancels at rest is ever summed: what is left of digits depends neither on how
+// stiff the material is nor on how far the body has gone.
 //
-// Tets and springs are cut into patches of neighbouring nodes. A patch adds up what its tets and
-// springs do to its own copies of their nodes (its slots), which stay in the nearest cache; then
-// every node adds up its slots. Patches do not depend on the number of threads, and every sum has
-// one order: the same bits on any number of them.
+// Nodes, tets and springs are cut into patches of neighbouring nodes, in whose order they are kept.
+// A patch adds up what its tets and springs do to its own copies of their nodes (its slots), which
+// stay in the nearest cache; then every node adds up its slots. Patches do not depend on the number
+// of threads, and every sum has one order: the same bits on any number of them.
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <span>
 #include <vector>
 
+#include "sinew/base/parallel.h"
 #include "sinew/forces/packed_kernels.h"
 #include "sinew/model/model.h"
 #include "sinew/model/state.h"
@@ -24,58 +26,100 @@ class PackedForces {
  public:
   explicit PackedForces(const Model& model);
 
-  // Computes what tets and springs do at the state's positions and velocities; gather() adds it
-  // up. Returns the power that the springs' dashpots turn into heat [W].
+  // Computes what tets and springs do at the state's positions and velocities; for_each_force()
+  // adds it up. Returns the power that the springs' dashpots turn into heat [W].
   double compute(const Model& model, const State& state);
 
-  // force[i] = what network, volume terms and springs do to node i [N], for the nodes of the range.
-  void gather(Range nodes, std::span<Vec3> force) const;
+  // Calls f(patch, node, force) for every node, with what network, volume terms and springs do to
+  // it [N]: patch by patch in parallel, the nodes of a patch in one order.
+  template <class F>
+  void for_each_force(const F& f) const {
+    parallel_tasks(patch_count(), [&](Index p) {
+      const Range nodes = patches_[uz(p)].nodes;
+      std::array<float, std::size_t{4} * (most_nodes + 1)> force;
+      gather(patches_[uz(p)], force.data());
+      for (Index k = 0; k < nodes.size(); ++k) {
+        const Index node = node_of_[uz(nodes.begin + k)];
+        const float* x = force.data() + 4 * k;
+        if (node >= 0) {
+          f(p, node,
+            Vec3(static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])));
+        }
+      }
+    });
+  }
+  Index patch_count() const { return static_cast<Index>(patches_.size()); }
 
   // The tets that compute() saw below half of their volume: those that the guard pushes, or may
   // push within a step.
   const std::vector<Index>& low_tets() const { return low_tets_; }
 
+  // Bytes that the arrays hold, scratch included.
+  std::size_t bytes() const;
+
  private:
-  struct Patch {
-    Range slots;
-    Range tets;     // in groups of eight
-    Range springs;  // in groups of eight
+  friend class Packer;
+
+  static constexpr Index most_nodes = 512;  // of a patch: its slots stay in the L1 cache
+
+  // Where a patch's groups of fans or stars begin in the arrays of all.
+  struct Groups {
+    Range groups;
+    Index first_corner = 0;
+    Index first_datum = 0;
   };
-  class Slots;
-  void pack_tets(const Model& model, const std::vector<Index>& tets, Slots& slots);
-  void pack_springs(const Model& model, const std::vector<Index>& springs, Slots& slots);
+  struct Patch {
+    Index body = -1;  // whose frame its slots are in; -1: none
+    Range nodes;      // packed; of even size, the last one may stand for no node
+    Range slots;      // the first are the patch's own nodes
+    Range others;     // in other_slot_
+    Groups fans;
+    Groups stars;
+    Index first_tet = 0;  // in tet_id_ and tet_change_
+  };
+  // Three nodes of a body, far apart, whose way its frame follows.
+  using Triad = std::array<Index, 3>;
+
+  Frame frame_of(Index body) const { return body < 0 ? Frame() : frames_[uz(body)]; }
+  void compute_frames(const Model& model, const State& state);
+  void fill_slots(const Model& model, const State& state, const Patch& patch);
+  void compute_cell_pressures();
+  void turn_loose_forces(const Patch& patch);
   void find_low_tets(const Patch& patch);
-  void list_slots(const Model& model);
-  void pack_network(const Model& model);
-  PackedTets tets_of(const Patch& patch) const;
-  PackedSprings springs_of(const Patch& patch) const;
+  void gather(const Patch& patch, float* force) const;
+  PackedGroups fans_of(const Patch& patch) const;
+  PackedGroups stars_of(const Patch& patch) const;
 
   std::vector<Patch> patches_;
-  std::vector<Index> slot_node_;           // (slots)
+  std::vector<Triad> triads_;              // (bodies)
+  std::vector<Index> node_of_;             // the model's node (packed nodes) -1: none
+  std::vector<Index> body_of_;             // (packed nodes) -1: none
+  std::vector<Index> slot_node_;           // packed (slots)
   std::vector<Index> slot_cell_;           // (slots) -1: none
-  std::vector<Index> node_start_;          // offsets into node_slot_ (nodes + 1)
-  std::vector<Index> node_slot_;           // increasing for each node
+  std::vector<Index> other_slot_;          // patch by patch: slots of other patches that act on it
+  std::vector<std::uint16_t> other_node_;  // 4 x the node, from the patch's first (as other_slot_)
   std::vector<Index> cell_start_;          // offsets into cell_slot_ (cells + 1)
   std::vector<Index> cell_slot_;           // increasing for each cell
-  std::vector<float> cell_stiffness_;      // kappa_c / V_c [Pa/m3] (cells)
-  std::vector<std::uint16_t> tet_corner_;  // 4 x slot, counted from the patch's first (32 a group)
-  std::vector<Index> tet_id_;              // (8 a group) -1: none
-  std::vector<float> tet_data_;            // packed_tet_fields x 8 a group
-  std::vector<std::uint16_t> spring_end_;  // as tet_corner_ (16 a group)
-  std::vector<float> spring_data_;         // packed_spring_fields x 8 a group
-  std::vector<Index> network_start_;       // offsets (nodes + 1), each a multiple of four
-  std::vector<std::uint32_t> network_offset_;  // 4 x node
-  std::vector<float> network_stiffness_;       // [N/m]
-  bool has_tets_ = false;
-  bool has_cells_ = false;
+  std::vector<float> cell_stiffness_;      // kappa_c W^2 / V_c [Pa/m3], W the weight (cells)
+  std::vector<std::uint16_t> fan_corner_;  // packed_kernels.h
+  std::vector<float> fan_data_;
+  std::vector<std::uint8_t> fan_length_;  // (groups)
+  std::vector<Index> tet_id_;             // (8 a group and tet) -1: none
+  std::vector<std::uint16_t> star_corner_;
+  std::vector<float> star_data_;
+  std::vector<std::uint8_t> star_length_;  // (groups)
+  std::vector<Index> row_start_;           // PackedRows; empty: no network
+  std::vector<std::uint32_t> row_offset_;
+  std::vector<float> row_stiffness_;  // [N/m]
 
   // Scratch: four floats a node or slot.
-  std::vector<float> displacement_;       // (nodes)
-  std::vector<float> velocity_;           // (nodes)
-  std::vector<float> slot_displacement_;  // (slots) the fourth: the pressure of its cell
-  std::vector<float> slot_velocity_;      // (slots)
-  std::vector<float> slot_force_;         // (slots) the fourth: its share of its cell's change [m3]
-  std::vector<float> tet_change_;         // v - V [m3] (8 a group)
+  std::vector<Frame> frames_;             // (bodies)
+  std::vector<float> displacement_;       // (packed nodes)
+  std::vector<float> velocity_;           // (packed nodes) empty where there are no springs
+  std::vector<float> slot_displacement_;  // (slots) the fourth: pressure of its cell times W
+  std::vector<float> slot_velocity_;      // (slots) empty where there are no springs
+  std::vector<float> slot_force_;         // (slots) the fourth: change of its cell over W [m3]
+  std::vector<float> tet_change_;         // v - V [m3] (as tet_id_)
   std::vector<float> cell_pressure_;      // (cells)
   std::vector<Index> low_tets_;
 };

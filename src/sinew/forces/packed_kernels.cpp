@@ -9,325 +9,273 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "sinew/forces/eight-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace sinew {
 namespace HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-// At most eight lanes, one order of every sum, and no fused multiply-adds, so that every
-// instruction set gives the same bits.
-using Lanes = hn::CappedTag<float, packed_lanes>;
-using V = hn::Vec<Lanes>;
-using Four = hn::FixedTag<float, 4>;
-constexpr std::size_t step = hn::MaxLanes(Lanes());
-static_assert(step == 4 || step == 8);
-
-struct V3 {
-  V x, y, z;
-};
-HWY_INLINE V3 plus(const V3& a, const V3& b) {
-  return {hn::Add(a.x, b.x), hn::Add(a.y, b.y), hn::Add(a.z, b.z)};
-}
-HWY_INLINE V3 minus(const V3& a, const V3& b) {
-  return {hn::Sub(a.x, b.x), hn::Sub(a.y, b.y), hn::Sub(a.z, b.z)};
-}
-HWY_INLINE V3 scale(V s, const V3& a) {
-  return {hn::Mul(s, a.x), hn::Mul(s, a.y), hn::Mul(s, a.z)};
-}
-HWY_INLINE V dot(const V3& a, const V3& b) {
-  return hn::Add(hn::Add(hn::Mul(a.x, b.x), hn::Mul(a.y, b.y)), hn::Mul(a.z, b.z));
-}
-HWY_INLINE V3 cross(const V3& a, const V3& b) {
-  return {hn::Sub(hn::Mul(a.y, b.z), hn::Mul(a.z, b.y)),
-          hn::Sub(hn::Mul(a.z, b.x), hn::Mul(a.x, b.z)),
-          hn::Sub(hn::Mul(a.x, b.y), hn::Mul(a.y, b.x))};
-}
-
-// The four floats of the slots index[k], and index[k + 4] above them where lanes are eight.
-template <class D>
-HWY_INLINE hn::Vec<D> row(D d, const float* base, const std::uint16_t* index, std::size_t k) {
-  const Four four;
-  if constexpr (hn::MaxLanes(D()) == 8) {
-    return hn::Combine(d, hn::LoadU(four, base + std::size_t{index[k + 4]}),
-                       hn::LoadU(four, base + std::size_t{index[k]}));
-  } else {
-    return hn::LoadU(d, base + std::size_t{index[k]});
+// Where the loops over groups are in a group's corners and data.
+struct Cursor {
+  const std::uint16_t* corner;
+  const float* data;
+  const std::uint16_t* next_corner() {
+    const std::uint16_t* c = corner;
+    corner += packed_lanes;
+    return c;
   }
-}
-
-// Four floats of each of the slots, as four vectors of one float of each: a transpose in registers.
-struct Quad {
-  V3 v;
-  V w;
-};
-HWY_INLINE Quad load(const float* base, const std::uint16_t* index) {
-  const Lanes d;
-  const hn::Repartition<double, Lanes> wide;
-  const V r0 = row(d, base, index, 0);
-  const V r1 = row(d, base, index, 1);
-  const V r2 = row(d, base, index, 2);
-  const V r3 = row(d, base, index, 3);
-  const auto xy01 = hn::BitCast(wide, hn::InterleaveLower(d, r0, r1));  // x0 x1 y0 y1
-  const auto xy23 = hn::BitCast(wide, hn::InterleaveLower(d, r2, r3));
-  const auto zw01 = hn::BitCast(wide, hn::InterleaveUpper(d, r0, r1));
-  const auto zw23 = hn::BitCast(wide, hn::InterleaveUpper(d, r2, r3));
-  return {{hn::BitCast(d, hn::InterleaveLower(wide, xy01, xy23)),
-           hn::BitCast(d, hn::InterleaveUpper(wide, xy01, xy23)),
-           hn::BitCast(d, hn::InterleaveLower(wide, zw01, zw23))},
-          hn::BitCast(d, hn::InterleaveUpper(wide, zw01, zw23))};
-}
-
-template <class D>
-HWY_INLINE void add_row(D d, float* base, const std::uint16_t* index, std::size_t k, hn::Vec<D> r) {
-  const Four four;
-  float* low = base + std::size_t{index[k]};
-  if constexpr (hn::MaxLanes(D()) == 8) {
-    hn::StoreU(hn::Add(hn::LoadU(four, low), hn::LowerHalf(four, r)), four, low);
-    float* high = base + std::size_t{index[k + 4]};
-    hn::StoreU(hn::Add(hn::LoadU(four, high), hn::UpperHalf(four, r)), four, high);
-  } else {
-    hn::StoreU(hn::Add(hn::LoadU(d, low), r), d, low);
+  Eight next() {
+    const Eight e = load(data);
+    data += packed_lanes;
+    return e;
   }
-}
-
-// The way back, as rows: f.x f.y f.z 0 of each of the slots.
-struct Rows {
-  V k[4];
-};
-HWY_INLINE Rows rows_of(const V3& f) {
-  const Lanes d;
-  const hn::Repartition<double, Lanes> wide;
-  const V zero = hn::Zero(d);
-  const auto xy01 = hn::BitCast(wide, hn::InterleaveLower(d, f.x, f.y));  // x0 y0 x1 y1
-  const auto xy23 = hn::BitCast(wide, hn::InterleaveUpper(d, f.x, f.y));
-  const auto z01 = hn::BitCast(wide, hn::InterleaveLower(d, f.z, zero));
-  const auto z23 = hn::BitCast(wide, hn::InterleaveUpper(d, f.z, zero));
-  return {{hn::BitCast(d, hn::InterleaveLower(wide, xy01, z01)),
-           hn::BitCast(d, hn::InterleaveUpper(wide, xy01, z01)),
-           hn::BitCast(d, hn::InterleaveLower(wide, xy23, z23)),
-           hn::BitCast(d, hn::InterleaveUpper(wide, xy23, z23))}};
-}
-
-// The vectors of a group of eight, in one part or in two.
-struct Group {
-  V3 part[packed_lanes / step];
+  Eight3 next3() {
+    const Eight x = next();
+    const Eight y = next();
+    return {x, y, next()};
+  }
 };
 
-// Adds them to their slots in the order 0 4 1 5 2 6 3 7, however many lanes there are: items of a
-// group may share a slot.
-HWY_INLINE void add(const Group& f, float* base, const std::uint16_t* index) {
-  const Lanes d;
-  const Rows low = rows_of(f.part[0]);
-  if (step == packed_lanes) {
-    for (std::size_t k = 0; k < 4; ++k) add_row(d, base, index, k, low.k[k]);
-    return;
-  }
-  const Rows high = rows_of(f.part[packed_lanes / step - 1]);
-  for (std::size_t k = 0; k < 4; ++k) {
-    add_row(d, base, index, k, low.k[k]);
-    add_row(d, base, index + 4, k, high.k[k]);
-  }
-}
-
-// Eight of a field, from the lane on.
-HWY_INLINE V field(const float* group, Index f, std::size_t lane) {
-  return hn::LoadU(Lanes(), group + f * packed_lanes + lane);
-}
-HWY_INLINE V3 field3(const float* group, Index f, std::size_t lane) {
-  return {field(group, f, lane), field(group, f + 1, lane), field(group, f + 2, lane)};
-}
-
-// v - V = [ d_1 . (e_2 x e_3) + E_1 . (d_2 x e_3 + E_2 x d_3) ] / 6,  d the change of an edge:
-// nothing that cancels at rest.
-void volumes(const PackedTets& tets, const float* u, float* change, float* force) {
-  const Lanes d;
-  HWY_ALIGN float part[4 * packed_lanes];
-  for (Index g = 0; g < tets.groups; ++g) {
-    const std::uint16_t* corner = tets.corner + 4 * packed_lanes * g;
-    const float* data = tets.data + packed_tet_fields * packed_lanes * g;
-    for (std::size_t lane = 0; lane < packed_lanes; lane += step) {
-      const V3 u0 = load(u, corner + lane).v;
-      const V3 d1 = minus(load(u, corner + packed_lanes + lane).v, u0);
-      const V3 d2 = minus(load(u, corner + 2 * packed_lanes + lane).v, u0);
-      const V3 d3 = minus(load(u, corner + 3 * packed_lanes + lane).v, u0);
-      const V3 E1 = field3(data, 0, lane);
-      const V3 E2 = field3(data, 3, lane);
-      const V3 e2 = plus(E2, d2);
-      const V3 e3 = plus(field3(data, 6, lane), d3);
-      const V six = hn::Add(dot(d1, cross(e2, e3)), dot(E1, plus(cross(d2, e3), cross(E2, d3))));
-      const V dv = hn::Mul(hn::Set(d, 1.0f / 6.0f), six);
-      hn::StoreU(dv, d, change + packed_lanes * g + lane);
-      for (std::size_t a = 0; a < 4; ++a) {
-        hn::StoreU(hn::Mul(field(data, 13 + static_cast<Index>(a), lane), dv), d,
-                   part + packed_lanes * a + lane);
-      }
+// With d the change of an edge from axis[0], e = E + d, and for the axis itself e_1:
+//   6 (v - V) = c_p . e_q + (E_1 x E_p) . d_q,   c_p = d_1 x e_p + E_1 x d_p,
+// the change of e_1 x e_p: nothing that cancels at rest.
+void volumes(const PackedGroups& fans, const float* u, float* change, float* force) {
+  Cursor at{fans.corner, fans.data};
+  float* sum = force + 3;
+  for (Index g = 0; g < fans.groups; ++g) {
+    const std::uint16_t* a = at.next_corner();
+    const std::uint16_t* b = at.next_corner();
+    const std::uint16_t* p = at.next_corner();
+    const Eight3 ua = load_rows(u, a).v;
+    const Eight3 d1 = load_rows(u, b).v - ua;
+    const Eight3 E1 = at.next3();
+    Eight3 dp = load_rows(u, p).v - ua;
+    Eight3 Ep = at.next3();
+    at.data += (fan_head_fields - 6) * packed_lanes;
+    Eight of_axis = zero();
+    Eight before = zero();
+    for (int k = 0; k < fans.length[g]; ++k) {
+      const std::uint16_t* q = at.next_corner();
+      const Eight3 dq = load_rows(u, q).v - ua;
+      const Eight3 Eq = at.next3();
+      at.next();
+      const Eight share = at.next();
+      const Eight3 ep = Ep + dp;
+      const Eight3 eq = Eq + dq;
+      const Eight3 c = cross(d1, ep) + cross(E1, dp);
+      const Eight dv = set(1.0f / 6.0f) * (dot(c, eq) + dot(cross(E1, Ep), dq));
+      store(dv, change);
+      change += packed_lanes;
+      const Eight part = share * dv;
+      add_to(sum, p, before + part);
+      before = part;
+      of_axis = of_axis + part;
+      p = q;
+      dp = dq;
+      Ep = Eq;
     }
-    float* volume = force + 3;
-    for (std::size_t k = 0; k < 4 * packed_lanes; k += 4) {
-      volume[std::size_t{corner[k]}] += part[k];
-      volume[std::size_t{corner[k + 1]}] += part[k + 1];
-      volume[std::size_t{corner[k + 2]}] += part[k + 2];
-      volume[std::size_t{corner[k + 3]}] += part[k + 3];
-    }
+    add_to(sum, p, before);
+    add_to(sum, a, of_axis);
+    add_to(sum, b, of_axis);
   }
 }
 
-// With s' = s + mu the forces on the corners 1, 2, 3 are
-//   f_1 = -[ (s' e_2 - mu d_2) x e_3 - mu E_2 x d_3 ] / 6   and so on around,
-// which is -(s g_a - s_rest G_a): s = -mu at rest, where the network pulls with mu G_a.
-float tet_forces(const PackedTets& tets, const float* u, const float* change, float* force) {
-  const Lanes d;
-  V smallest = hn::Set(d, 1.0f);
-  for (Index g = 0; g < tets.groups; ++g) {
-    const std::uint16_t* corner = tets.corner + 4 * packed_lanes * g;
-    const float* data = tets.data + packed_tet_fields * packed_lanes * g;
-    Group f0, f1, f2, f3;
-    for (std::size_t lane = 0; lane < packed_lanes; lane += step) {
-      const std::size_t part = lane / step;
-      const Quad q0 = load(u, corner + lane);
-      const Quad q1 = load(u, corner + packed_lanes + lane);
-      const Quad q2 = load(u, corner + 2 * packed_lanes + lane);
-      const Quad q3 = load(u, corner + 3 * packed_lanes + lane);
-      const V3 d1 = minus(q1.v, q0.v);
-      const V3 d2 = minus(q2.v, q0.v);
-      const V3 d3 = minus(q3.v, q0.v);
-      const V3 E1 = field3(data, 0, lane);
-      const V3 E2 = field3(data, 3, lane);
-      const V3 E3 = field3(data, 6, lane);
-      const V3 e1 = plus(E1, d1);
-      const V3 e2 = plus(E2, d2);
-      const V3 e3 = plus(E3, d3);
-
-      const V one = hn::Set(d, 1.0f);
-      const V strain =
-          hn::Mul(hn::LoadU(d, change + packed_lanes * g + lane), field(data, 9, lane));
-      const V ratio = hn::Add(one, strain);
-      smallest = hn::Min(smallest, ratio);
-      const V cells = hn::Add(
-          hn::Add(hn::Mul(field(data, 13, lane), q0.w), hn::Mul(field(data, 14, lane), q1.w)),
-          hn::Add(hn::Mul(field(data, 15, lane), q2.w), hn::Mul(field(data, 16, lane), q3.w)));
+// A tet with the pressure s = s' - mu pushes its corners with -(s g_a - s_rest G_a), g_a the
+// gradients of its volume: s = -mu at rest, where the network pulls with mu G_a. With m = -mu / 6,
+// s = -s' / 6 and c_p as above
+//   on ring[k + 1]   s e_1 x e_p - m c_p,
+//   on ring[k]     -(s e_1 x e_q - m c_q),
+//   on axis[1]      (s e_p - m d_p) x e_q - m E_p x d_q,
+// and on axis[0] minus their sum.
+float tet_forces(const PackedGroups& fans, const float* u, const float* change, float* force) {
+  Cursor at{fans.corner, fans.data};
+  const Eight one = set(1.0f);
+  Eight smallest = one;
+  for (Index g = 0; g < fans.groups; ++g) {
+    const std::uint16_t* a = at.next_corner();
+    const std::uint16_t* b = at.next_corner();
+    const std::uint16_t* p = at.next_corner();
+    const Rows ra = load_rows(u, a);
+    const Rows rb = load_rows(u, b);
+    const Rows rp = load_rows(u, p);
+    const Eight of_axis = ra.w + rb.w;
+    const Eight3 d1 = rb.v - ra.v;
+    const Eight3 E1 = at.next3();
+    const Eight3 e1 = E1 + d1;
+    Eight pressure_p = rp.w;
+    Eight3 dp = rp.v - ra.v;
+    Eight3 Ep = at.next3();
+    Eight3 ep = Ep + dp;
+    const Eight m = -at.next();
+    const Eight kappa = at.next();
+    const Eight guard = set(static_cast<float>(guard_factor)) * at.next();
+    const Eight3 md1 = m * d1;
+    const Eight3 mE1 = m * E1;
+    Eight3 Cp = cross(e1, ep);
+    Eight3 mcp = cross(md1, ep) + cross(mE1, dp);
+    Eight3 on_p = {zero(), zero(), zero()};
+    Eight3 on_b = on_p;
+    Eight3 on_ring = on_p;
+    for (int k = 0; k < fans.length[g]; ++k) {
+      const std::uint16_t* q = at.next_corner();
+      const Rows rq = load_rows(u, q);
+      const Eight3 dq = rq.v - ra.v;
+      const Eight3 Eq = at.next3();
+      const Eight3 eq = Eq + dq;
+      const Eight strain = load(change) * at.next();
+      change += packed_lanes;
+      const Eight ratio = one + strain;
+      smallest = min(smallest, ratio);
       // The guard, as in volume_law.h.
-      const V lack =
-          hn::Max(hn::Zero(d), hn::Sub(hn::Set(d, static_cast<float>(guard_threshold)), ratio));
-      const V below = hn::Min(ratio, hn::Zero(d));
-      const V guard =
-          hn::Mul(hn::Mul(hn::Set(d, static_cast<float>(guard_factor)), field(data, 12, lane)),
-                  hn::Sub(hn::Mul(lack, lack), hn::Mul(below, below)));
-      const V pressure = hn::Sub(hn::Add(hn::Mul(field(data, 11, lane), strain), cells), guard);
-      const V s = hn::Mul(hn::Set(d, -1.0f / 6.0f), pressure);
-      const V mu = hn::Neg(field(data, 10, lane));
+      const Eight lack = max(zero(), set(static_cast<float>(guard_threshold)) - ratio);
+      const Eight below = min(ratio, zero());
+      const Eight cells = at.next() * (of_axis + pressure_p + rq.w);
+      const Eight pressure = kappa * strain + cells - guard * (lack * lack - below * below);
+      const Eight s = set(-1.0f / 6.0f) * pressure;
 
-      const V3 b1 = minus(scale(s, e1), scale(mu, d1));
-      const V3 b2 = minus(scale(s, e2), scale(mu, d2));
-      const V3 b3 = minus(scale(s, e3), scale(mu, d3));
-      f1.part[part] = minus(cross(b2, e3), scale(mu, cross(E2, d3)));
-      f2.part[part] = minus(cross(b3, e1), scale(mu, cross(E3, d1)));
-      f3.part[part] = minus(cross(b1, e2), scale(mu, cross(E1, d2)));
-      const V3 sum = plus(plus(f1.part[part], f2.part[part]), f3.part[part]);
-      f0.part[part] = {hn::Neg(sum.x), hn::Neg(sum.y), hn::Neg(sum.z)};
+      const Eight3 Cq = cross(e1, eq);
+      const Eight3 mcq = cross(md1, eq) + cross(mE1, dq);
+      on_p = on_p + (mcq - s * Cq);
+      add_rows(force, p, on_p);
+      on_ring = on_ring + on_p;
+      on_b = on_b + (cross(s * ep - m * dp, eq) - cross(m * Ep, dq));
+      on_p = s * Cp - mcp;
+      p = q;
+      pressure_p = rq.w;
+      dp = dq;
+      Ep = Eq;
+      ep = eq;
+      Cp = Cq;
+      mcp = mcq;
     }
-    add(f0, force, corner);
-    add(f1, force, corner + packed_lanes);
-    add(f2, force, corner + 2 * packed_lanes);
-    add(f3, force, corner + 3 * packed_lanes);
+    add_rows(force, p, on_p);
+    add_rows(force, b, on_b);
+    add_rows(force, a, -(on_ring + on_p + on_b));
   }
-  return hn::GetLane(hn::MinOfLanes(d, smallest));
+  return smallest_of(smallest);
 }
 
-// As spring_law.h, with |x| - l0 = (|x|^2 - l0^2) / (|x| + l0) from the change of the square.
-double spring_forces(const PackedSprings& springs, const float* u, const float* velocity,
+// As spring_law.h, with |x| - l0 = (|x|^2 - l0^2) / (|x| + l0) from the change of the square, and
+// one division for both: r = 1 / ((|x| + l0) |x|^2).
+double spring_forces(const PackedGroups& stars, const float* u, const float* velocity,
                      float* force) {
-  const Lanes d;
-  HWY_ALIGN float heat[packed_lanes] = {};
-  for (Index g = 0; g < springs.groups; ++g) {
-    const std::uint16_t* end = springs.end + 2 * packed_lanes * g;
-    const float* data = springs.data + packed_spring_fields * packed_lanes * g;
-    Group on_low, on_high;
-    for (std::size_t lane = 0; lane < packed_lanes; lane += step) {
-      const std::uint16_t* low = end + lane;
-      const std::uint16_t* high = end + packed_lanes + lane;
-      const V3 change = minus(load(u, high).v, load(u, low).v);
-      const V3 speed = minus(load(velocity, high).v, load(velocity, low).v);
-      const V3 rest = field3(data, 0, lane);
-      const V3 x = plus(rest, change);
-      const V length2 = dot(x, x);
-      const V length = hn::Sqrt(length2);
-      const V grown2 = hn::Add(dot(change, plus(rest, x)), field(data, 3, lane));
-      const V l0 = field(data, 4, lane);
-      const auto apart = hn::Gt(length2, hn::Zero(d));
-      const V inverse2 = hn::IfThenElseZero(apart, hn::Div(hn::Set(d, 1.0f), length2));
-      const V grown = hn::IfThenElseZero(apart, hn::Div(grown2, hn::Add(length, l0)));
-      const V along = dot(speed, x);
-      const V dashpot = hn::Mul(hn::Mul(field(data, 6, lane), along), inverse2);
-      const V pull = hn::Add(
-          hn::Mul(hn::Mul(hn::Mul(field(data, 5, lane), grown), length), inverse2), dashpot);
-      const V3 f = scale(pull, x);
-      on_low.part[lane / step] = f;
-      on_high.part[lane / step] = {hn::Neg(f.x), hn::Neg(f.y), hn::Neg(f.z)};
-      hn::StoreU(hn::Add(hn::LoadU(d, heat + lane), hn::Mul(dashpot, along)), d, heat + lane);
+  Cursor at{stars.corner, stars.data};
+  Eight heat = zero();
+  for (Index g = 0; g < stars.groups; ++g) {
+    const std::uint16_t* centre = at.next_corner();
+    const Eight3 ui = load_rows(u, centre).v;
+    const Eight3 vi = load_rows(velocity, centre).v;
+    Eight3 on_centre = {zero(), zero(), zero()};
+    for (int k = 0; k < stars.length[g]; ++k) {
+      const std::uint16_t* end = at.next_corner();
+      const Eight3 change = load_rows(u, end).v - ui;
+      const Eight3 speed = load_rows(velocity, end).v - vi;
+      const Eight3 rest = at.next3();
+      const Eight3 x = rest + change;
+      const Eight length2 = dot(x, x);
+      const Eight length = sqrt(length2);
+      const Eight grown2 = dot(change, rest + x) + at.next();
+      const Eight sum = length + at.next();
+      // Ends closer than 1e-10 m have no direction.
+      const Eight r = inverse_where_above(1e-20f, length2, sum * length2);
+      const Eight stiffness = at.next();
+      const Eight along = dot(speed, x);
+      const Eight dashpot = at.next() * along * (sum * r);
+      const Eight3 f = (stiffness * grown2 * (length * r) + dashpot) * x;
+      heat = heat + dashpot * along;
+      on_centre = on_centre + f;
+      add_rows(force, end, -f);
     }
-    add(on_low, force, end);
-    add(on_high, force, end + packed_lanes);
+    add_rows(force, centre, on_centre);
   }
+  HWY_ALIGN float parts_of_heat[packed_lanes];
+  store(heat, parts_of_heat);
   double sum = 0.0;
-  for (const float h : heat) sum += static_cast<double>(h);
+  for (const float h : parts_of_heat) sum += static_cast<double>(h);
   return sum;
 }
 
-// sum_j k_ij (u_j - u_i) over entries in fours: each of the four has its own sum.
-template <class D>
-HWY_INLINE hn::Vec<Four> network_pull(D d, const PackedNodes& nodes, const float* u,
-                                      hn::Vec<Four> own, std::size_t k, std::size_t end) {
-  const Four four;
-  const auto at = [&](std::size_t e) {
-    return hn::LoadU(four, u + std::size_t{nodes.network_offset[e]});
+// R^T x, in one order.
+HWY_INLINE Vec3 turned_back(const Mat3& R, const Vec3& x) {
+  return {R(0, 0) * x[0] + R(1, 0) * x[1] + R(2, 0) * x[2],
+          R(0, 1) * x[0] + R(1, 1) * x[1] + R(2, 1) * x[2],
+          R(0, 2) * x[0] + R(1, 2) * x[1] + R(2, 2) * x[2]};
+}
+
+void displacements(const Frame& frame, std::span<const Index> nodes, const Vec3* rest,
+                   const Vec3* position, const Vec3* velocity, float* u, float* v) {
+  const auto put = [](const Vec3& x, float* to) {
+    to[0] = static_cast<float>(x[0]);
+    to[1] = static_cast<float>(x[1]);
+    to[2] = static_cast<float>(x[2]);
   };
-  const auto stiffness = [&](std::size_t e) { return hn::Set(four, nodes.network_stiffness[e]); };
-  if constexpr (hn::MaxLanes(D()) == 8) {
-    const auto owns = hn::Combine(d, own, own);
-    auto a = hn::Zero(d);
-    auto b = hn::Zero(d);
-    for (; k < end; k += 4) {
-      a = hn::Add(a, hn::Mul(hn::Combine(d, stiffness(k + 1), stiffness(k)),
-                             hn::Sub(hn::Combine(d, at(k + 1), at(k)), owns)));
-      b = hn::Add(b, hn::Mul(hn::Combine(d, stiffness(k + 3), stiffness(k + 2)),
-                             hn::Sub(hn::Combine(d, at(k + 3), at(k + 2)), owns)));
-    }
-    return hn::Add(hn::Add(hn::LowerHalf(four, a), hn::UpperHalf(four, a)),
-                   hn::Add(hn::LowerHalf(four, b), hn::UpperHalf(four, b)));
-  } else {
-    auto a = hn::Zero(four);
-    auto b = a;
-    auto c = a;
-    auto e = a;
-    for (; k < end; k += 4) {
-      a = hn::Add(a, hn::Mul(stiffness(k), hn::Sub(at(k), own)));
-      b = hn::Add(b, hn::Mul(stiffness(k + 1), hn::Sub(at(k + 1), own)));
-      c = hn::Add(c, hn::Mul(stiffness(k + 2), hn::Sub(at(k + 2), own)));
-      e = hn::Add(e, hn::Mul(stiffness(k + 3), hn::Sub(at(k + 3), own)));
-    }
-    return hn::Add(hn::Add(a, b), hn::Add(c, e));
+  for (std::size_t k = 0; k < nodes.size(); ++k) {
+    if (nodes[k] < 0) continue;
+    const auto i = uz(nodes[k]);
+    const Vec3 way = turned_back(frame.rotation, position[i] - frame.centre);
+    put(way - (rest[i] - frame.rest_centre), u + 4 * k);
+    if (v != nullptr) put(turned_back(frame.rotation, velocity[i] - frame.velocity), v + 4 * k);
   }
 }
 
-void gather(const PackedNodes& nodes, const float* u, const float* slot_force, Range range,
-            Vec3* force) {
-  const Four four;
-  HWY_ALIGN float out[4];
-  for (auto n = uz(range.begin); n < uz(range.end); ++n) {
-    auto sum = hn::Zero(four);
-    for (auto k = uz(nodes.slot_start[n]); k < uz(nodes.slot_start[n + 1]); ++k) {
-      sum = hn::Add(sum, hn::LoadU(four, slot_force + 4 * uz(nodes.slot[k])));
+// sum_j k_ij u_j for both nodes of a pair, or for one of them where lanes are four: every fourth
+// place of the list has a sum of its own.
+template <class D>
+HWY_INLINE hn::Vec<D> pull_of_rows(D d, const PackedRows& rows, std::size_t begin, std::size_t end,
+                                   const float* stiffness, const float* u) {
+  const auto at = [&](std::size_t k) HWY_ATTR {
+    if constexpr (hn::MaxLanes(D()) == 8) {
+      return hn::LoadDup128(d, u + std::size_t{rows.offset[k]});
+    } else {
+      return hn::LoadU(d, u + std::size_t{rows.offset[k]});
     }
-    if (nodes.network_start != nullptr) {
-      sum = hn::Add(sum, network_pull(Lanes(), nodes, u, hn::LoadU(four, u + 4 * n),
-                                      uz(nodes.network_start[n]), uz(nodes.network_start[n + 1])));
+  };
+  auto a = hn::Zero(d);
+  auto b = a;
+  auto c = a;
+  auto e = a;
+  for (std::size_t k = begin; k < end; k += 4) {
+    const auto four = hn::LoadU(d, stiffness + 2 * k);
+    a = hn::Add(a, hn::Mul(hn::Broadcast<0>(four), at(k)));
+    b = hn::Add(b, hn::Mul(hn::Broadcast<1>(four), at(k + 1)));
+    c = hn::Add(c, hn::Mul(hn::Broadcast<2>(four), at(k + 2)));
+    e = hn::Add(e, hn::Mul(hn::Broadcast<3>(four), at(k + 3)));
+  }
+  return hn::Add(hn::Add(a, b), hn::Add(c, e));
+}
+
+void gather(const Frame& frame, const PackedRows& rows, const PackedSlots& slots, const float* u,
+            Range pairs, float* force) {
+  const Lanes d;
+  const float* own = slots.own;
+  for (auto p = uz(pairs.begin); p < uz(pairs.end); ++p, own += 8) {
+    float* to = force + 8 * (p - uz(pairs.begin));
+    for (std::size_t part = 0; part < parts; ++part) {
+      V sum = hn::LoadU(d, own + lanes * part);
+      if (rows.start != nullptr) {
+        sum = hn::Add(sum, pull_of_rows(d, rows, uz(rows.start[p]), uz(rows.start[p + 1]),
+                                        rows.stiffness + lanes * part, u));
+      }
+      hn::StoreU(sum, d, to + lanes * part);
     }
-    hn::StoreU(sum, four, out);
-    force[n] =
-        Vec3(static_cast<double>(out[0]), static_cast<double>(out[1]), static_cast<double>(out[2]));
+  }
+  for (Index k = 0; k < slots.others; ++k) {
+    add_four(force + std::size_t{slots.node[k]},
+             hn::LoadU(Four(), slots.force + 4 * uz(slots.other[k])));
+  }
+  HWY_ALIGN float axis[12] = {};
+  for (Eigen::Index c = 0; c < 3; ++c) {
+    for (Eigen::Index r = 0; r < 3; ++r) axis[4 * c + r] = static_cast<float>(frame.rotation(r, c));
+  }
+  const V R0 = hn::LoadDup128(d, axis);
+  const V R1 = hn::LoadDup128(d, axis + 4);
+  const V R2 = hn::LoadDup128(d, axis + 8);
+  for (std::size_t k = 0; k < 8 * uz(pairs.size()); k += lanes) {
+    const V f = hn::LoadU(d, force + k);
+    hn::StoreU(hn::Add(hn::Add(hn::Mul(hn::Broadcast<0>(f), R0), hn::Mul(hn::Broadcast<1>(f), R1)),
+                       hn::Mul(hn::Broadcast<2>(f), R2)),
+               d, force + k);
   }
 }
 
@@ -342,24 +290,31 @@ namespace sinew {
 HWY_EXPORT(volumes);
 HWY_EXPORT(tet_forces);
 HWY_EXPORT(spring_forces);
+HWY_EXPORT(displacements);
 HWY_EXPORT(gather);
 
-void packed_volumes(const PackedTets& tets, const float* u, float* change, float* force) {
-  HWY_DYNAMIC_DISPATCH(volumes)(tets, u, change, force);
+void packed_volumes(const PackedGroups& fans, const float* u, float* change, float* force) {
+  HWY_DYNAMIC_DISPATCH(volumes)(fans, u, change, force);
 }
 
-float packed_tet_forces(const PackedTets& tets, const float* u, const float* change, float* force) {
-  return HWY_DYNAMIC_DISPATCH(tet_forces)(tets, u, change, force);
+float packed_tet_forces(const PackedGroups& fans, const float* u, const float* change,
+                        float* force) {
+  return HWY_DYNAMIC_DISPATCH(tet_forces)(fans, u, change, force);
 }
 
-double packed_spring_forces(const PackedSprings& springs, const float* u, const float* velocity,
+double packed_spring_forces(const PackedGroups& stars, const float* u, const float* velocity,
                             float* force) {
-  return HWY_DYNAMIC_DISPATCH(spring_forces)(springs, u, velocity, force);
+  return HWY_DYNAMIC_DISPATCH(spring_forces)(stars, u, velocity, force);
 }
 
-void packed_gather(const PackedNodes& nodes, const float* u, const float* slot_force, Range range,
-                   Vec3* force) {
-  HWY_DYNAMIC_DISPATCH(gather)(nodes, u, slot_force, range, force);
+void packed_displacements(const Frame& frame, std::span<const Index> nodes, const Vec3* rest,
+                          const Vec3* position, const Vec3* velocity, float* u, float* v) {
+  HWY_DYNAMIC_DISPATCH(displacements)(frame, nodes, rest, position, velocity, u, v);
+}
+
+void packed_gather(const Frame& frame, const PackedRows& rows, const PackedSlots& slots,
+                   const float* u, Range pairs, float* force) {
+  HWY_DYNAMIC_DISPATCH(gather)(frame, rows, slots, u, pairs, force);
 }
 
 }  // namespace sinew

@@ -1,51 +1,76 @@
-// The loops of PackedForces over groups of eight tets or springs, for every instruction set that
-// the processor may have; all give the same bits.
+// The loops of PackedForces over groups of eight fans of tets or stars of springs, for every
+// instruction set that the processor may have; all give the same bits.
+//
+// A group is eight fans of the same length, one a lane. Its corners come as
+//   axis[0], axis[1], ring[0], ring[1], ...   eight of each,
+// 4 x slot: where the four floats of the slot begin. Its data come as a head and then, tet by tet,
+// what belongs to the tet and to the ring's next node, eight of each field.
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "sinew/base/vec.h"
 
 namespace sinew {
 
-// Rest edges E_1, E_2, E_3 (9) [m], 1 / V [1/m3], mu / 6 [Pa], kappa [Pa], mu of the guard [Pa],
-// shares of the corners' cells (4) [-].
-inline constexpr Index packed_tet_fields = 17;
-// X_ij (3) [m], |X_ij|^2 - l0^2 [m2], l0 [m], k [N/m], c [N s/m].
-inline constexpr Index packed_spring_fields = 7;
 inline constexpr Index packed_lanes = 8;
+// Head: rest edges from axis[0] to axis[1] and to ring[0] (6) [m], mu / 6 [Pa], kappa [Pa], mu of
+// the guard [Pa].
+inline constexpr Index fan_head_fields = 9;
+// Rest edge from axis[0] to ring[k + 1] (3) [m], 1 / V [1/m3], share of a corner's cell per weight
+// of the cell [-].
+inline constexpr Index fan_tet_fields = 5;
+// X_ij (3) [m], |X_ij|^2 - l0^2 [m2], l0 [m], k [N/m], c [N s/m]; i is the star's centre.
+inline constexpr Index star_spring_fields = 7;
 
-struct PackedTets {
-  const std::uint16_t* corner = nullptr;  // 4 x slot: where its four floats begin
+// Groups of fans or stars, one after the other.
+struct PackedGroups {
+  const std::uint16_t* corner = nullptr;  // of a star: the centre, then the other ends
   const float* data = nullptr;
+  const std::uint8_t* length = nullptr;  // tets or springs of each fan or star (groups)
   Index groups = 0;
 };
 
-struct PackedSprings {
-  const std::uint16_t* end = nullptr;  // as corner
-  const float* data = nullptr;
-  Index groups = 0;
-};
-
-// change = v - V of every tet; adds the corners' shares of it to the fourth places of `force`
-// (4 a slot).
-void packed_volumes(const PackedTets& tets, const float* u, float* change, float* force);
-// Adds the forces of the tets to `force`. u: with the cells' pressures in the fourth places.
-// Returns the smallest v/V.
-float packed_tet_forces(const PackedTets& tets, const float* u, const float* change, float* force);
+// change = v - V of every tet; adds share times it to the fourth places of `force` (4 a slot), for
+// all four corners.
+void packed_volumes(const PackedGroups& fans, const float* u, float* change, float* force);
+// Adds the forces of the tets to `force`. u: with the cells' pressures times their weights in the
+// fourth places. Returns the smallest v/V.
+float packed_tet_forces(const PackedGroups& fans, const float* u, const float* change,
+                        float* force);
 // Adds the forces of the springs; returns the heat of the dashpots [W].
-double packed_spring_forces(const PackedSprings& springs, const float* u, const float* velocity,
+double packed_spring_forces(const PackedGroups& stars, const float* u, const float* velocity,
                             float* force);
 
-struct PackedNodes {
-  const Index* network_start = nullptr;           // may be null: no network
-  const std::uint32_t* network_offset = nullptr;  // 4 x node; in fours
-  const float* network_stiffness = nullptr;
-  const Index* slot_start = nullptr;
-  const Index* slot = nullptr;
+// The way a body has gone as a whole, which its displacements leave out: x = c + R (X - C + u).
+struct Frame {
+  Mat3 rotation = Mat3::Identity();  // R
+  Vec3 centre = Vec3::Zero();        // c [m]
+  Vec3 rest_centre = Vec3::Zero();   // C [m]
+  Vec3 velocity = Vec3::Zero();      // of the centre [m/s]
 };
-// force = sum_j k_ij (u_j - u_i) + the forces of the node's slots, in the nodes' order.
-void packed_gather(const PackedNodes& nodes, const float* u, const float* slot_force, Range range,
-                   Vec3* force);
+// u and, where asked for, R^T (v - the centre's velocity) of the nodes, four floats each.
+void packed_displacements(const Frame& frame, std::span<const Index> nodes, const Vec3* rest,
+                          const Vec3* position, const Vec3* velocity, float* u, float* v);
+
+// Rows of the network in pairs: both nodes of a pair pull on the same list of nodes.
+struct PackedRows {
+  const Index* start = nullptr;           // offsets into `offset` (pairs + 1); multiples of four
+  const std::uint32_t* offset = nullptr;  // 4 x node
+  const float* stiffness = nullptr;       // of four of the list: 4 of one node, 4 of the other
+};
+// The slots whose forces act on the nodes of a patch: those of its own, in their order, and some of
+// other patches.
+struct PackedSlots {
+  const float* own = nullptr;  // of the first node; four floats a slot
+  const float* force = nullptr;
+  const Index* other = nullptr;         // slots in `force` (others)
+  const std::uint16_t* node = nullptr;  // 4 x the node it acts on, from the patch's first (others)
+  Index others = 0;
+};
+// force = R (sum_j k_ij u_j + the forces of the node's slots), four floats each, for the pairs.
+void packed_gather(const Frame& frame, const PackedRows& rows, const PackedSlots& slots,
+                   const float* u, Range pairs, float* force);
 
 }  // namespace sinew

@@ -28,40 +28,46 @@ double outer_potential(const Model& model, const State& state) {
 
 double compute_forces(const Model& model, const State& state, Workspace& workspace) {
   double power = 0.0;
-  const bool packed = workspace.packed != nullptr;
-  if (packed) {
-    power = workspace.packed->compute(model, state);
-    compute_tet_geometry(model, state.position, workspace.packed->low_tets(), workspace);
-    workspace.has_tets = false;
-  } else {
-    power = compute_spring_forces(model, state, workspace);
-    if (model.has_volume) compute_volume_pressures(model, state.position, workspace);
-  }
   const bool viscous = !model.tet_viscosity.empty();
+  // Writes the node's force, of which `inner` is given; returns the power of its drag.
+  const auto finish = [&](Index i, Vec3 inner) {
+    const auto k = uz(i);
+    double drag_power = 0.0;
+    if (viscous) inner += gather_viscous(model, workspace, i);
+    if (model.inverse_mass[k] > 0.0) {
+      const Vec3& w = state.half_velocity[k];
+      inner += model.mass[k] * (model.gravity - model.drag[k] * w);
+      drag_power = model.mass[k] * model.drag[k] * w.squaredNorm();
+    }
+    workspace.force[k] = inner;
+    return drag_power;
+  };
   if (viscous) {
     power += compute_viscous_forces(model, state.position, state.half_velocity, workspace);
   }
-  const bool network = !model.network_start.empty();
-  const Index n = model.node_count();
-  workspace.partial.assign(static_cast<std::size_t>(block_count(n)), 0.0);
-  parallel_blocks(n, [&](Index b, Range r) {
-    double drag_power = 0.0;
-    if (packed) workspace.packed->gather(r, workspace.force);
-    for (Index i = r.begin; i < r.end; ++i) {
-      const auto k = uz(i);
-      Vec3 f = packed ? workspace.force[k] : gather_springs(model, workspace, i);
-      if (!packed && network) f += network_pull(model, state.position, i);
-      if (!packed && model.has_volume) f += push_of_tets(model, workspace, i);
-      if (viscous) f += gather_viscous(model, workspace, i);
-      if (model.inverse_mass[k] > 0.0) {
-        const Vec3& w = state.half_velocity[k];
-        f += model.mass[k] * (model.gravity - model.drag[k] * w);
-        drag_power += model.mass[k] * model.drag[k] * w.squaredNorm();
+  if (workspace.packed) {
+    PackedForces& packed = *workspace.packed;
+    power += packed.compute(model, state);
+    compute_tet_geometry(model, state.position, packed.low_tets(), workspace);
+    workspace.has_tets = false;
+    workspace.partial.assign(uz(packed.patch_count()), 0.0);
+    packed.for_each_force([&](Index patch, Index node, const Vec3& force) {
+      workspace.partial[uz(patch)] += finish(node, force);
+    });
+  } else {
+    power += compute_spring_forces(model, state, workspace);
+    if (model.has_volume) compute_volume_pressures(model, state.position, workspace);
+    const bool network = !model.network_start.empty();
+    workspace.partial.assign(uz(block_count(model.node_count())), 0.0);
+    parallel_blocks(model.node_count(), [&](Index b, Range r) {
+      for (Index i = r.begin; i < r.end; ++i) {
+        Vec3 f = gather_springs(model, workspace, i);
+        if (network) f += network_pull(model, state.position, i);
+        if (model.has_volume) f += push_of_tets(model, workspace, i);
+        workspace.partial[uz(b)] += finish(i, f);
       }
-      workspace.force[k] = f;
-    }
-    workspace.partial[uz(b)] = drag_power;
-  });
+    });
+  }
   for (const double p : workspace.partial) power += p;
 
   add_load_forces(model, state.position, state.time, 1.0, workspace.force);

@@ -72,9 +72,8 @@ void compute_tet_rates(const Model& model, std::span<const Vec3> u, Workspace& w
 // Gives every node cell its share of its tets: in proportion to the cell's volume when each tet is
 // cut in equal quarters. Equal quarters make cells of one tet at corners of the mesh, which lock as
 // tets do; with these shares the larger neighbours take over.
-void share_tets_among_cells(Model& model, const Body& body, Index first_cell) {
-  const std::vector<double> quarters(model.cell_volume);
-  std::fill(model.cell_volume.begin() + first_cell, model.cell_volume.end(), 0.0);
+void share_tets_among_cells(Model& model, const Body& body) {
+  const std::vector<double> quarters = quarter_volumes_of_cells(model, body.tets);
   for (auto t = uz(body.tets.begin); t < uz(body.tets.end); ++t) {
     double sum = 0.0;
     for (const Index c : model.cells[t]) sum += c >= 0 ? quarters[uz(c)] : 0.0;
@@ -96,7 +95,6 @@ void add_volume_terms(Model& model, const Body& body, const std::vector<Material
   model.tet_modulus.resize(end, 0.0);
   model.cells.resize(end, {-1, -1, -1, -1});
   model.cell_share.resize(end, {0.0, 0.0, 0.0, 0.0});
-  const Index first_cell = model.cell_count();
   std::map<std::pair<Index, int>, Index> cell_of;  // (node, region) -> cell
   for (auto t = uz(body.tets.begin); t < end; ++t) {
     const int region = model.tet_region[t];
@@ -116,10 +114,19 @@ void add_volume_terms(Model& model, const Body& body, const std::vector<Material
         model.volume_limit.push_back(m.volume_limit);
       }
       model.cells[t][a] = entry->second;
-      model.cell_volume[uz(entry->second)] += 0.25 * model.rest_volume[t];
     }
   }
-  share_tets_among_cells(model, body, first_cell);
+  share_tets_among_cells(model, body);
+}
+
+std::vector<double> quarter_volumes_of_cells(const Model& model, Range tets) {
+  std::vector<double> quarters(model.cell_volume.size(), 0.0);
+  for (auto t = uz(tets.begin); t < uz(tets.end); ++t) {
+    for (const Index c : model.cells[t]) {
+      if (c >= 0) quarters[uz(c)] += 0.25 * model.rest_volume[t];
+    }
+  }
+  return quarters;
 }
 
 void finish_volume_terms(Model& model) {

@@ -21,6 +21,10 @@ namespace sinew {
 // node cells, split by region.
 void add_volume_terms(Model& model, const Body& body, const std::vector<Material>& materials);
 
+// The volume of every node cell [m3] when each of the tets is cut in equal quarters: a tet's shares
+// in the cells of its corners (Model::cell_share) are in proportion to it.
+std::vector<double> quarter_volumes_of_cells(const Model& model, Range tets);
+
 // Derives the lists cell -> tets and node -> tets; called once, by finish().
 void finish_volume_terms(Model& model);
 
