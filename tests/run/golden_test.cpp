@@ -6,6 +6,7 @@
 #include <fstream>
 #include <map>
 #include <string>
+#include <tuple>
 
 #include "sinew/base/parallel.h"
 #include "sinew/run/run.h"
@@ -36,13 +37,16 @@ std::map<std::string, std::string> read_golden() {
   return hashes;
 }
 
-class Golden : public testing::TestWithParam<std::string> {};
+// Scene and precision.
+class Golden : public testing::TestWithParam<std::tuple<std::string, std::string>> {};
 
 TEST_P(Golden, SameBitsAsRecordedAtOneAndTwoThreads) {
-  const std::string name = GetParam();
+  const auto& [file, precision] = GetParam();
+  const std::string name = file + ":" + precision;
   const Scene scene =
-      load_scene(SINEW_SOURCE_DIR "/scenes/" + name + ".toml",
-                 {"duration=" + std::to_string(test::effort(golden_scenes.at(name)))});
+      load_scene(SINEW_SOURCE_DIR "/scenes/" + file + ".toml",
+                 {"duration=" + std::to_string(test::effort(golden_scenes.at(file))),
+                  "precision=" + precision});
   std::vector<std::string> hashes;
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
@@ -63,10 +67,13 @@ TEST_P(Golden, SameBitsAsRecordedAtOneAndTwoThreads) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Golden,
-                         testing::Values("beam", "drop", "ligament", "liver", "press", "pull",
-                                         "talk-good-constants", "talk-tissue-limits", "twist"),
+                         testing::Combine(testing::Values("beam", "drop", "ligament", "liver",
+                                                          "press", "pull", "talk-good-constants",
+                                                          "talk-tissue-limits", "twist"),
+                                          testing::Values("single", "double")),
                          [](const auto& test) {
-                           std::string name = test.param;
+                           std::string name =
+                               std::get<0>(test.param) + "_" + std::get<1>(test.param);
                            std::erase(name, '-');
                            return name;
                          });

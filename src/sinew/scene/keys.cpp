@@ -61,7 +61,7 @@ KeyTables make_tables() {
                  number("duration", "s", "2", positive),
                  word("stepper", "\"verlet\"", "verlet implicit static auto"),
                  word("scheme", "\"sdirk2\"", "sdirk2 backward-euler"),
-                 word("precision", "\"double\"", "single double"),
+                 word("precision", "\"single\"", "single double"),
                  number("tolerance", "", "1e-6", {1e-12, 0.1}),
                  number("budget_ms", "ms", "", positive),
                  {"dt", T::number_or_word, "s", "\"auto\"", positive, "auto"},
