@@ -1,7 +1,7 @@
 #include "sinew/forces/network.h"
 
 #include <algorithm>
-#include <cstdint>
+#include <utility>
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/edge_cells.h"
@@ -9,36 +9,63 @@
 namespace sinew {
 namespace {
 
-struct Entry {
-  std::int64_t pair = 0;  // row * nodes + column, row < column, ids in the mesh
-  double stiffness = 0.0;
+// The stiffnesses k_ij, j > i, of a node i, in the order in which its neighbours were met.
+struct UpperRow {
+  std::vector<Index> node;
+  std::vector<double> stiffness;
+
+  void add(Index j, double k) {
+    const auto at = static_cast<std::size_t>(std::find(node.begin(), node.end(), j) - node.begin());
+    if (at == node.size()) {
+      node.push_back(j);
+      stiffness.push_back(0.0);
+    }
+    stiffness[at] += k;
+  }
 };
 
 // Adds -weight g_a . g_b to k of every pair of a cell's nodes.
-void add_cell(std::span<const Index> nodes, std::span<const Vec3> g, double weight, Index count,
-              std::vector<Entry>& entries) {
+void add_cell(std::span<const Index> nodes, std::span<const Vec3> g, double weight,
+              std::vector<UpperRow>& rows) {
   for (std::size_t a = 0; a < nodes.size(); ++a) {
     for (std::size_t b = a + 1; b < nodes.size(); ++b) {
-      const std::int64_t low = std::min(nodes[a], nodes[b]);
-      const std::int64_t high = std::max(nodes[a], nodes[b]);
-      entries.push_back({low * count + high, -weight * g[a].dot(g[b])});
+      const auto [low, high] = std::minmax(nodes[a], nodes[b]);
+      rows[uz(low)].add(high, -weight * g[a].dot(g[b]));
     }
   }
 }
 
-// Sums the entries of equal pairs, in the order in which they were added.
-void merge(std::vector<Entry>& entries) {
-  std::stable_sort(entries.begin(), entries.end(),
-                   [](const Entry& a, const Entry& b) { return a.pair < b.pair; });
-  std::size_t kept = 0;
-  for (std::size_t e = 0; e < entries.size(); ++e) {
-    if (kept > 0 && entries[kept - 1].pair == entries[e].pair) {
-      entries[kept - 1].stiffness += entries[e].stiffness;
-    } else {
-      entries[kept++] = entries[e];
+// Appends the rows of a body's nodes to the model's, each in increasing order.
+void append_rows(Model& model, const std::vector<UpperRow>& upper, Index first_node) {
+  std::vector<Index> length(upper.size(), 0);
+  for (std::size_t i = 0; i < upper.size(); ++i) {
+    length[i] += static_cast<Index>(upper[i].node.size());
+    for (const Index j : upper[i].node) ++length[uz(j)];
+  }
+  auto& start = model.network_start;
+  start.resize(uz(first_node) + 1, start.empty() ? 0 : start.back());
+  for (const Index n : length) start.push_back(start.back() + n);
+  model.network_node.resize(uz(start.back()));
+  model.network_stiffness.resize(uz(start.back()));
+  std::vector<Index> next(start.begin() + first_node, start.end() - 1);
+  const auto put = [&](std::size_t row, std::size_t column, double k) {
+    const auto slot = uz(next[row]++);
+    model.network_node[slot] = first_node + static_cast<Index>(column);
+    model.network_stiffness[slot] = k;
+  };
+  // The lower neighbours of a node come first because they put themselves there before its own row.
+  std::vector<std::pair<Index, double>> row;
+  for (std::size_t i = 0; i < upper.size(); ++i) {
+    row.clear();
+    for (std::size_t k = 0; k < upper[i].node.size(); ++k) {
+      row.emplace_back(upper[i].node[k], upper[i].stiffness[k]);
+    }
+    std::sort(row.begin(), row.end());
+    for (const auto& [j, k] : row) {
+      put(i, uz(j), k);
+      put(uz(j), i, k);
     }
   }
-  entries.resize(kept);
 }
 
 }  // namespace
@@ -63,52 +90,23 @@ void add_network(Model& model, const TetMesh& mesh, const std::vector<Material>&
   std::vector<std::array<Vec3, 4>> gradients(mesh.tets.size());
   parallel_for(mesh.tet_count(),
                [&](Index t) { gradients[uz(t)] = shape_gradients(mesh.nodes, mesh.tets[uz(t)]); });
-  std::vector<Entry> entries;
+  std::vector<UpperRow> upper(mesh.nodes.size());
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     const Material& m = materials[static_cast<std::size_t>(region_of(t))];
     const double beta = network_beta(m);
     if (!in_network(m) || beta == 0.0) continue;
     const double weight =
         beta * shear_modulus(m.young, m.poisson) * signed_volume(mesh.nodes, mesh.tets[uz(t)]);
-    add_cell(mesh.tets[uz(t)], gradients[uz(t)], weight, mesh.node_count(), entries);
+    add_cell(mesh.tets[uz(t)], gradients[uz(t)], weight, upper);
   }
   for_each_edge_cell(mesh, gradients, tet_region, [&](const EdgeCell& cell) {
     const Material& m = materials[static_cast<std::size_t>(cell.region)];
     const double beta = network_beta(m);
     if (!in_network(m) || beta == 1.0) return;
     const double shear = (1.0 - beta) * shear_modulus(m.young, m.poisson);
-    add_cell(cell.nodes, cell.sums, shear / cell.volume, mesh.node_count(), entries);
+    add_cell(cell.nodes, cell.sums, shear / cell.volume, upper);
   });
-  merge(entries);
-
-  // Rows from the upper triangle: the lower neighbours of a node come first, in increasing order,
-  // because the entries are sorted by row and then by column.
-  const auto count = uz(mesh.node_count());
-  const auto first = uz(first_node);
-  const auto filled = static_cast<Index>(model.network_node.size());
-  model.network_start.resize(first + count + 1,
-                             model.network_start.empty() ? 0 : model.network_start.back());
-  std::vector<Index> length(count, 0);
-  for (const Entry& entry : entries) {
-    ++length[static_cast<std::size_t>(entry.pair / mesh.node_count())];
-    ++length[static_cast<std::size_t>(entry.pair % mesh.node_count())];
-  }
-  std::vector<Index> next(count, filled);
-  for (std::size_t i = 0; i < count; ++i) {
-    if (i > 0) next[i] = next[i - 1] + length[i - 1];
-    model.network_start[first + i + 1] = next[i] + length[i];
-  }
-  model.network_node.resize(uz(filled) + 2 * entries.size());
-  model.network_stiffness.resize(model.network_node.size());
-  const auto put = [&](std::int64_t row, std::int64_t column, double k) {
-    const auto slot = uz(next[static_cast<std::size_t>(row)]++);
-    model.network_node[slot] = first_node + static_cast<Index>(column);
-    model.network_stiffness[slot] = k;
-  };
-  for (const Entry& entry : entries) {
-    put(entry.pair / mesh.node_count(), entry.pair % mesh.node_count(), entry.stiffness);
-    put(entry.pair % mesh.node_count(), entry.pair / mesh.node_count(), entry.stiffness);
-  }
+  append_rows(model, upper, first_node);
 }
 
 double network_energy(const Model& model, std::span<const Vec3> x) {

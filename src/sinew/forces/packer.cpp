@@ -5,6 +5,7 @@
 
 #include "sinew/base/sort_by_key.h"
 #include "sinew/forces/packed.h"
+#include "sinew/forces/packed_groups.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/bisect.h"
 #include "sinew/mesh/fans.h"
@@ -27,63 +28,6 @@ struct Star {
     springs.pop_back();
     return last;
   }
-};
-
-// The same items so that neighbours in the list are far apart: an item that adds to a node right
-// after another one has to wait for it.
-template <class Item>
-void spread(std::vector<Item>& items) {
-  const std::size_t n = items.size();
-  if (n < 3) return;
-  std::size_t stride = std::max<std::size_t>(1, n * 5 / 8);
-  while (std::gcd(stride, n) != 1) ++stride;
-  std::vector<Item> out;
-  for (std::size_t i = 0; i < n; ++i) out.push_back(std::move(items[i * stride % n]));
-  items = std::move(out);
-}
-
-// Calls emit(length, items) with eight items of that length at a time. Those that are left of a
-// length are cut; of the single ones, the last call may get fewer than eight.
-template <class Item, class Emit>
-void group_by_length(std::vector<Item> items, const Emit& emit) {
-  std::size_t longest = 0;
-  for (const Item& item : items) longest = std::max(longest, item.length());
-  std::vector<Item> of_length;
-  std::vector<Item> single;
-  for (std::size_t length = longest; length > 0; --length) {
-    for (Item& item : items) {
-      if (item.length() == length) of_length.push_back(std::move(item));
-    }
-    std::erase_if(items, [](const Item& item) { return item.length() == 0; });
-    if (length == 1) std::move(single.begin(), single.end(), std::back_inserter(of_length));
-    spread(of_length);
-    std::size_t first = 0;
-    for (; first + 8 <= of_length.size() || (length == 1 && first < of_length.size()); first += 8) {
-      const std::size_t count = std::min<std::size_t>(8, of_length.size() - first);
-      emit(length, std::span<const Item>(of_length.data() + first, count));
-    }
-    of_length.erase(of_length.begin(), of_length.begin() + static_cast<std::ptrdiff_t>(
-                                                               std::min(first, of_length.size())));
-    for (Item& item : of_length) single.push_back(item.split_last());
-  }
-}
-
-// Appends eight of each of `fields` fields, zero to begin with, and sets single values in them.
-class Fields {
- public:
-  Fields(std::vector<float>& data, Index fields) : data_(data), first_(data.size()) {
-    data.resize(first_ + uz(fields * packed_lanes), 0.0f);
-  }
-  void put(Index field, std::size_t lane, double value) {
-    data_[first_ + uz(field * packed_lanes) + lane] = static_cast<float>(value);
-  }
-  void put(Index field, std::size_t lane, const Vec3& value) {
-    for (Index c = 0; c < 3; ++c) put(field + c, lane, value[c]);
-  }
-
- private:
-  std::vector<float>& data_;
-  std::size_t first_;
 };
 
 // Three nodes of the body: one in its middle, the farthest from it, the farthest from their line.
@@ -157,6 +101,7 @@ class Packer {
       order_nodes_of(model_.bodies[b].nodes, static_cast<Index>(b));
     }
     order_nodes_of({model_.body_node_count(), model_.node_count()}, -1);
+    slot_of_.assign(to_.node_of_.size(), -1);
   }
 
   void order_nodes_of(Range nodes, Index body) {
@@ -195,13 +140,14 @@ class Packer {
   // --- slots: one for each pair of a node and a cell; the first are the patch's own nodes ---
 
   void begin_patch(PackedForces::Patch& patch) {
-    slots_.clear();
-    first_slot_ = to_.slot_node_.size();
-    patch.slots.begin = static_cast<Index>(first_slot_);
-    for (Index n = patch.nodes.begin; n < patch.nodes.end; ++n) {
-      slots_[{n, free_cell}] = add_slot(n);
+    for (auto s = first_slot_; s < to_.slot_node_.size(); ++s) {
+      slot_of_[uz(to_.slot_node_[s])] = -1;
     }
-    patch.first_tet = static_cast<Index>(to_.tet_id_.size());
+    other_slots_.clear();
+    first_slot_ = to_.slot_node_.size();
+    patch.slots.begin = size(to_.slot_node_);
+    for (Index n = patch.nodes.begin; n < patch.nodes.end; ++n) add_slot(n, free_cell);
+    patch.first_tet = size(to_.tet_id_);
     patch.fans = {{size(to_.fan_length_), 0}, size(to_.fan_corner_), size(to_.fan_data_)};
     patch.stars = {{size(to_.star_length_), 0}, size(to_.star_corner_), size(to_.star_data_)};
   }
@@ -210,6 +156,7 @@ class Packer {
     patch.slots.end = size(to_.slot_node_);
     patch.fans.groups.end = size(to_.fan_length_);
     patch.stars.groups.end = size(to_.star_length_);
+    std::replace(to_.slot_cell_.begin() + patch.slots.begin, to_.slot_cell_.end(), free_cell, -1);
   }
 
   template <class T>
@@ -217,33 +164,31 @@ class Packer {
     return static_cast<Index>(v.size());
   }
 
-  Index add_slot(Index packed) {
+  Index add_slot(Index packed, Index cell) {
+    const Index s = size(to_.slot_node_);
     to_.slot_node_.push_back(packed);
-    to_.slot_cell_.push_back(-1);
-    return size(to_.slot_node_) - 1;
+    to_.slot_cell_.push_back(cell);
+    if (slot_of_[uz(packed)] < 0) slot_of_[uz(packed)] = s;
+    return s;
   }
 
   // 4 x the slot of the node for the cell, counted from the patch's first. A slot without a cell
   // takes the first that comes.
   std::uint16_t slot(Index node, Index cell) {
     const Index n = packed_of_[uz(node)];
-    const auto known = slots_.find({n, cell});
-    if (known != slots_.end()) return local(known->second);
-    const auto free = slots_.find({n, free_cell});
-    const Index s = free != slots_.end() ? free->second : add_slot(n);
-    if (free != slots_.end()) slots_.erase(free);
-    to_.slot_cell_[uz(s)] = cell;
-    slots_[{n, cell}] = s;
-    return local(s);
+    const Index s = slot_of_[uz(n)];
+    if (s < 0) return local(add_slot(n, cell));
+    Index& cell_of_slot = to_.slot_cell_[uz(s)];
+    if (cell_of_slot == free_cell) cell_of_slot = cell;
+    if (cell_of_slot == cell) return local(s);
+    const auto [entry, added] = other_slots_.try_emplace({n, cell}, 0);
+    if (added) entry->second = add_slot(n, cell);
+    return local(entry->second);
   }
   // Any slot of the node.
   std::uint16_t slot(Index node) {
     const Index n = packed_of_[uz(node)];
-    const auto known = slots_.lower_bound({n, free_cell});
-    if (known != slots_.end() && known->first.first == n) return local(known->second);
-    const Index s = add_slot(n);
-    slots_[{n, free_cell}] = s;
-    return local(s);
+    return local(slot_of_[uz(n)] >= 0 ? slot_of_[uz(n)] : add_slot(n, free_cell));
   }
   std::uint16_t local(Index s) const {
     return static_cast<std::uint16_t>(4 * (uz(s) - first_slot_));
@@ -300,23 +245,22 @@ class Packer {
 
   // --- springs ---
 
-  void pack_springs(const std::vector<Index>& springs) {
-    std::map<Index, Star> stars;  // by the end that comes first in the patch's order
-    for (const Index s : springs) {
+  void pack_springs(std::vector<Index> springs) {
+    // By the end that comes first in the patch's order.
+    const auto centre_of = [&](Index s) {
       const auto [i, j] = model_.springs[uz(s)];
-      const Index centre = packed_of_[uz(i)] < packed_of_[uz(j)] ? i : j;
-      Star& star = stars[packed_of_[uz(centre)]];
-      star.centre = centre;
-      star.springs.push_back(s);
-    }
+      return packed_of_[uz(i)] < packed_of_[uz(j)] ? i : j;
+    };
+    std::stable_sort(springs.begin(), springs.end(), [&](Index s, Index t) {
+      return packed_of_[uz(centre_of(s))] < packed_of_[uz(centre_of(t))];
+    });
     std::vector<Star> list;
-    for (auto& [packed, star] : stars) {
-      while (star.length() > longest_star) {
-        const auto cut = star.springs.end() - static_cast<std::ptrdiff_t>(longest_star);
-        list.push_back({star.centre, {cut, star.springs.end()}});
-        star.springs.erase(cut, star.springs.end());
+    for (const Index s : springs) {
+      const Index centre = centre_of(s);
+      if (list.empty() || list.back().centre != centre || list.back().length() == longest_star) {
+        list.push_back({centre, {}});
       }
-      list.push_back(std::move(star));
+      list.back().springs.push_back(s);
     }
     group_by_length(std::move(list), [&](std::size_t length, std::span<const Star> group) {
       pack_stars(length, group);
@@ -395,33 +339,48 @@ class Packer {
   void pack_network() {
     if (model_.network_start.empty()) return;
     to_.row_start_.push_back(0);
-    std::map<Index, std::array<double, 2>> row;  // by packed node
+    struct Entry {
+      Index node;  // packed
+      std::array<double, 2> stiffness;
+    };
+    std::vector<Entry> row;
     for (std::size_t pair = 0; 2 * pair < to_.node_of_.size(); ++pair) {
       row.clear();
       for (std::size_t end = 0; end < 2; ++end) {
         const Index i = to_.node_of_[2 * pair + end];
         if (i < 0) continue;
+        const auto add = [&](Index node, double k) {
+          row.push_back({node, {end == 0 ? k : 0.0, end == 0 ? 0.0 : k}});
+        };
         double sum = 0.0;
-        for (auto k = uz(model_.network_start[uz(i)]); k < uz(model_.network_start[uz(i) + 1]);
-             ++k) {
-          const auto stiffness =
-              static_cast<double>(static_cast<float>(model_.network_stiffness[k]));
-          row[packed_of_[uz(model_.network_node[k])]][end] += stiffness;
-          sum += stiffness;
+        for (auto e = uz(model_.network_start[uz(i)]); e < uz(model_.network_start[uz(i) + 1]);
+             ++e) {
+          const auto k = static_cast<double>(static_cast<float>(model_.network_stiffness[e]));
+          add(packed_of_[uz(model_.network_node[e])], k);
+          sum += k;
         }
-        row[static_cast<Index>(2 * pair + end)][end] -= sum;
+        add(static_cast<Index>(2 * pair + end), -sum);
       }
-      while (row.size() % 4 != 0) row[-static_cast<Index>(row.size())] = {0.0, 0.0};
-      std::size_t place = 0;
-      for (const auto& [node, stiffness] : row) {
-        const auto at = node >= 0 ? uz(node) : 2 * pair;
-        to_.row_offset_.push_back(static_cast<std::uint32_t>(4 * at));
-        if (place % 4 == 0) to_.row_stiffness_.resize(to_.row_stiffness_.size() + 8, 0.0f);
-        float* block = to_.row_stiffness_.data() + to_.row_stiffness_.size() - 8;
-        for (std::size_t end = 0; end < 2; ++end) {
-          block[4 * end + place % 4] = static_cast<float>(stiffness[end]);
+      std::sort(row.begin(), row.end(),
+                [](const Entry& a, const Entry& b) { return a.node < b.node; });
+      std::size_t kept = 0;
+      for (const Entry& entry : row) {
+        if (kept > 0 && row[kept - 1].node == entry.node) {
+          for (std::size_t end = 0; end < 2; ++end)
+            row[kept - 1].stiffness[end] += entry.stiffness[end];
+        } else {
+          row[kept++] = entry;
         }
-        ++place;
+      }
+      row.resize(kept);
+      while (row.size() % 4 != 0) row.push_back({static_cast<Index>(2 * pair), {0.0, 0.0}});
+      for (std::size_t k = 0; k < row.size(); ++k) {
+        to_.row_offset_.push_back(4 * static_cast<std::uint32_t>(row[k].node));
+        if (k % 4 == 0) to_.row_stiffness_.resize(to_.row_stiffness_.size() + 8, 0.0f);
+        float* four = to_.row_stiffness_.data() + to_.row_stiffness_.size() - 8;
+        for (std::size_t end = 0; end < 2; ++end) {
+          four[4 * end + k % 4] = static_cast<float>(row[k].stiffness[end]);
+        }
       }
       to_.row_start_.push_back(size(to_.row_offset_));
     }
@@ -445,10 +404,11 @@ class Packer {
 
   const Model& model_;
   PackedForces& to_;
-  std::vector<Index> packed_of_;                    // (nodes)
-  std::vector<Index> patch_of_;                     // (nodes)
-  std::vector<double> weight_;                      // (cells)
-  std::map<std::pair<Index, Index>, Index> slots_;  // (packed node, cell) -> slot, of the patch
+  std::vector<Index> packed_of_;  // (nodes)
+  std::vector<Index> patch_of_;   // (nodes)
+  std::vector<double> weight_;    // (cells)
+  std::vector<Index> slot_of_;    // the node's first slot in the patch (packed nodes) -1: none
+  std::map<std::pair<Index, Index>, Index> other_slots_;  // (packed node, cell) -> further slots
   std::size_t first_slot_ = 0;
 };
 

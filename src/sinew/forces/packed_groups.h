@@ -1,0 +1,74 @@
+// How fans and stars become groups of eight, for packer.cpp.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <iterator>
+#include <numeric>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "sinew/base/vec.h"
+#include "sinew/forces/packed_kernels.h"
+
+namespace sinew {
+
+// The same items so that neighbours in the list are far apart: an item that adds to a node right
+// after another one has to wait for it.
+template <class Item>
+void spread(std::vector<Item>& items) {
+  const std::size_t n = items.size();
+  if (n < 3) return;
+  std::size_t stride = std::max<std::size_t>(1, n * 5 / 8);
+  while (std::gcd(stride, n) != 1) ++stride;
+  std::vector<Item> out;
+  for (std::size_t i = 0; i < n; ++i) out.push_back(std::move(items[i * stride % n]));
+  items = std::move(out);
+}
+
+// Calls emit(length, items) with eight items of that length at a time. Those that are left of a
+// length are cut; of the single ones, the last call may get fewer than eight.
+template <class Item, class Emit>
+void group_by_length(std::vector<Item> items, const Emit& emit) {
+  std::size_t longest = 0;
+  for (const Item& item : items) longest = std::max(longest, item.length());
+  std::vector<Item> of_length;
+  std::vector<Item> single;
+  for (std::size_t length = longest; length > 0; --length) {
+    for (Item& item : items) {
+      if (item.length() == length) of_length.push_back(std::move(item));
+    }
+    std::erase_if(items, [](const Item& item) { return item.length() == 0; });
+    if (length == 1) std::move(single.begin(), single.end(), std::back_inserter(of_length));
+    spread(of_length);
+    std::size_t first = 0;
+    for (; first + 8 <= of_length.size() || (length == 1 && first < of_length.size()); first += 8) {
+      const std::size_t count = std::min<std::size_t>(8, of_length.size() - first);
+      emit(length, std::span<const Item>(of_length.data() + first, count));
+    }
+    of_length.erase(of_length.begin(), of_length.begin() + static_cast<std::ptrdiff_t>(
+                                                               std::min(first, of_length.size())));
+    for (Item& item : of_length) single.push_back(item.split_last());
+  }
+}
+
+// Appends eight of each of `fields` fields, zero to begin with, and sets single values in them.
+class Fields {
+ public:
+  Fields(std::vector<float>& data, Index fields) : data_(data), first_(data.size()) {
+    data.resize(first_ + uz(fields * packed_lanes), 0.0f);
+  }
+  void put(Index field, std::size_t lane, double value) {
+    data_[first_ + uz(field * packed_lanes) + lane] = static_cast<float>(value);
+  }
+  void put(Index field, std::size_t lane, const Vec3& value) {
+    for (Index c = 0; c < 3; ++c) put(field + c, lane, value[c]);
+  }
+
+ private:
+  std::vector<float>& data_;
+  std::size_t first_;
+};
+
+}  // namespace sinew
