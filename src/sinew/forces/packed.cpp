@@ -89,8 +89,7 @@ void PackedForces::turn_loose_forces(const Patch& patch) {
   for (auto s = uz(patch.slots.begin); s < uz(patch.slots.end); ++s) {
     float* f = &slot_force_[4 * s];
     const Mat3& R = frame_of(body_of_[uz(slot_node_[s])]).rotation;
-    const Vec3 turned = R.transpose() * Vec3(static_cast<double>(f[0]), static_cast<double>(f[1]),
-                                             static_cast<double>(f[2]));
+    const Vec3 turned = R.transpose() * three_of(f);
     for (Eigen::Index c = 0; c < 3; ++c) f[c] = static_cast<float>(turned[c]);
   }
 }

@@ -13,6 +13,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "sinew/base/parallel.h"
@@ -22,30 +23,28 @@
 
 namespace sinew {
 
+// The x, y, z of four floats.
+inline Vec3 three_of(const float* four) {
+  return {static_cast<double>(four[0]), static_cast<double>(four[1]), static_cast<double>(four[2])};
+}
+
 class PackedForces {
  public:
   explicit PackedForces(const Model& model);
 
-  // Computes what tets and springs do at the state's positions and velocities; for_each_force()
+  // Computes what tets and springs do at the state's positions and velocities; for_each_patch()
   // adds it up. Returns the power that the springs' dashpots turn into heat [W].
   double compute(const Model& model, const State& state);
 
-  // Calls f(patch, node, force) for every node, with what network, volume terms and springs do to
-  // it [N]: patch by patch in parallel, the nodes of a patch in one order.
+  // Calls f(patch, nodes, forces) for every patch, in parallel, with what network, volume terms and
+  // springs do to its nodes [N]: four floats a node. A node of -1 is none.
   template <class F>
-  void for_each_force(const F& f) const {
+  void for_each_patch(const F& f) const {
     parallel_tasks(patch_count(), [&](Index p) {
-      const Range nodes = patches_[uz(p)].nodes;
+      const Patch& patch = patches_[uz(p)];
       std::array<float, std::size_t{4} * (most_nodes + 1)> force;
-      gather(patches_[uz(p)], force.data());
-      for (Index k = 0; k < nodes.size(); ++k) {
-        const Index node = node_of_[uz(nodes.begin + k)];
-        const float* x = force.data() + 4 * k;
-        if (node >= 0) {
-          f(p, node,
-            Vec3(static_cast<double>(x[0]), static_cast<double>(x[1]), static_cast<double>(x[2])));
-        }
-      }
+      gather(patch, force.data());
+      f(p, std::span(node_of_.data() + patch.nodes.begin, uz(patch.nodes.size())), force.data());
     });
   }
   Index patch_count() const { return static_cast<Index>(patches_.size()); }

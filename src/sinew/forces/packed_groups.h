@@ -14,6 +14,19 @@
 
 namespace sinew {
 
+// The springs of a node.
+struct Star {
+  Index centre = 0;
+  std::vector<Index> springs;
+
+  std::size_t length() const { return springs.size(); }
+  Star split_last() {
+    Star last{centre, {springs.back()}};
+    springs.pop_back();
+    return last;
+  }
+};
+
 // The same items so that neighbours in the list are far apart: an item that adds to a node right
 // after another one has to wait for it.
 template <class Item>

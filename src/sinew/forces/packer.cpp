@@ -17,19 +17,6 @@ constexpr std::size_t longest_fan = 6;
 constexpr std::size_t longest_star = 8;
 constexpr std::size_t springs_of_loose_patch = 512;
 
-// The springs of a node.
-struct Star {
-  Index centre = 0;
-  std::vector<Index> springs;
-
-  std::size_t length() const { return springs.size(); }
-  Star split_last() {
-    Star last{centre, {springs.back()}};
-    springs.pop_back();
-    return last;
-  }
-};
-
 // Three nodes of the body: one in its middle, the farthest from it, the farthest from their line.
 std::array<Index, 3> triad_of(const Model& model, const Body& body) {
   const auto& X = model.rest_position;

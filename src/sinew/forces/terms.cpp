@@ -51,8 +51,12 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
     compute_tet_geometry(model, state.position, packed.low_tets(), workspace);
     workspace.has_tets = false;
     workspace.partial.assign(uz(packed.patch_count()), 0.0);
-    packed.for_each_force([&](Index patch, Index node, const Vec3& force) {
-      workspace.partial[uz(patch)] += finish(node, force);
+    packed.for_each_patch([&](Index patch, std::span<const Index> nodes, const float* force) {
+      double drag_power = 0.0;
+      for (std::size_t k = 0; k < nodes.size(); ++k) {
+        if (nodes[k] >= 0) drag_power += finish(nodes[k], three_of(force + 4 * k));
+      }
+      workspace.partial[uz(patch)] = drag_power;
     });
   } else {
     power += compute_spring_forces(model, state, workspace);
@@ -60,12 +64,14 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
     const bool network = !model.network_start.empty();
     workspace.partial.assign(uz(block_count(model.node_count())), 0.0);
     parallel_blocks(model.node_count(), [&](Index b, Range r) {
+      double drag_power = 0.0;
       for (Index i = r.begin; i < r.end; ++i) {
         Vec3 f = gather_springs(model, workspace, i);
         if (network) f += network_pull(model, state.position, i);
         if (model.has_volume) f += push_of_tets(model, workspace, i);
-        workspace.partial[uz(b)] += finish(i, f);
+        drag_power += finish(i, f);
       }
+      workspace.partial[uz(b)] = drag_power;
     });
   }
   for (const double p : workspace.partial) power += p;
