@@ -63,9 +63,15 @@ class Packer {
       }
     }
     weigh_cells();
+    std::vector<std::vector<Fan>> fans(patches);
+    parallel_tasks(to_.patch_count(), [&](Index p) {
+      fans[uz(p)] = cut_into_fans(model_.tets, tets[uz(p)], model_.tet_region, longest_fan);
+    });
     for (std::size_t p = 0; p < patches; ++p) {
       begin_patch(to_.patches_[p]);
-      pack_tets(tets[p]);
+      group_by_length(std::move(fans[p]), [&](std::size_t length, std::span<const Fan> group) {
+        pack_fans(length, group);
+      });
       pack_springs(springs[p]);
       end_patch(to_.patches_[p]);
     }
@@ -182,12 +188,6 @@ class Packer {
   }
 
   // --- tets ---
-
-  void pack_tets(const std::vector<Index>& tets) {
-    group_by_length(
-        cut_into_fans(model_.tets, tets, model_.tet_region, longest_fan),
-        [&](std::size_t length, std::span<const Fan> fans) { pack_fans(length, fans); });
-  }
 
   void pack_fans(std::size_t length, std::span<const Fan> fans) {
     to_.fan_length_.push_back(static_cast<std::uint8_t>(length));
