@@ -63,7 +63,7 @@ void on_threads(int threads, const std::function<void(int)>& f) {
   for (std::thread& other : others) other.join();
 }
 
-// Rate [1/s] of what `run(thread)` returns the amount of, over all threads.
+// Best rate [1/s] seen of what `run(thread)` returns the amount of, over all threads.
 std::optional<double> rate(int threads, const TimerOptions& options,
                            const std::function<double(int)>& run) {
   std::vector<double> amount(static_cast<std::size_t>(threads));
@@ -73,7 +73,7 @@ std::optional<double> rate(int threads, const TimerOptions& options,
   if (!time) return std::nullopt;
   double sum = 0.0;
   for (const double a : amount) sum += a;
-  return sum / time->median;
+  return sum / time->min;
 }
 
 // With fewer passes than this many bytes, starting threads would be measured.
