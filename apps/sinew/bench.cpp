@@ -170,7 +170,8 @@ void add_bench(CLI::App& app, int& status) {
           ->capture_default_str();
   command->add_flag("--quick", a->quick, "W(4) and W(8), 0.03 s a measurement");
   command->add_option("--json", a->json, "Write JSON here; - prints it instead of the table")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   command
       ->add_option("--peer", a->peer,
                    "Program whose rows join; default: sinew_peer_bullet beside sinew")
