@@ -128,11 +128,12 @@ int bench(Arguments& a) {
     };
   }
   study::BenchResult result = study::run_bench(options);
-  if (terminal && !a.quiet) fmt::print(stderr, "\r\033[K");
-  const std::string peer = a.peer.empty() ? peer_beside() : a.peer;
+  const std::string peer = !a.peer.empty() ? a.peer : options.filter.empty() ? peer_beside() : "";
   if (!peer.empty() && !result.stopped) {
+    if (options.on_progress) options.on_progress(0, 1, peer);
     for (study::BenchRow& row : peer_rows(peer, options)) result.rows.push_back(std::move(row));
   }
+  if (terminal && !a.quiet) fmt::print(stderr, "\r\033[K");
   const std::string json = a.json.empty() ? "" : study::to_json(result).dump(2) + "\n";
   if (a.json == "-") {
     fmt::print("{}", json);
@@ -173,8 +174,9 @@ void add_bench(CLI::App& app, int& status) {
       ->type_name("FILE")
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast);
   command
-      ->add_option("--peer", a->peer,
-                   "Program whose rows join; default: sinew_peer_bullet beside sinew")
+      ->add_option(
+          "--peer", a->peer,
+          "Program whose rows join; without --filter: sinew_peer_bullet beside sinew, if there")
       ->type_name("PROGRAM");
   command->add_flag("-q,--quiet", a->quiet, "No progress and no table");
   command->footer(kFooter);
