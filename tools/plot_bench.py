@@ -64,9 +64,15 @@ def logarithmic(axes, x, y):
     axes.set_yscale("log")
     axes.set_xlabel(x)
     axes.set_ylabel(y)
-    axes.yaxis.set_major_formatter(matplotlib.ticker.FuncFormatter(lambda v, _: f"{v:g}"))
-    axes.yaxis.set_minor_formatter(matplotlib.ticker.FuncFormatter(
-        lambda v, _: f"{v:g}" if f"{v:e}"[0] in "25" else ""))
+    axes.yaxis.set_major_formatter(lambda v, _: f"{v:,g}")
+    axes.xaxis.set_major_formatter(lambda v, _: f"{v:,.0f}")
+    axes.yaxis.set_minor_formatter(lambda v, _: f"{v:,g}" if f"{v:e}"[0] in "25" else "")
+
+
+def legend(axes):
+    """Below the axes, where no curve is."""
+    axes.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.14), ncol=2,
+                handlelength=3.5)
 
 
 def draw_steps(axes, result, kernel, unit):
@@ -81,7 +87,7 @@ def draw_steps(axes, result, kernel, unit):
 
 
 def plot_size(result, path):
-    figure, (network, springs) = plt.subplots(1, 2, figsize=(10, 4.4), layout="constrained")
+    figure, (network, springs) = plt.subplots(1, 2, figsize=(10, 5), layout="constrained")
     draw_steps(network, result, "network step", "tet")
     network.set_title("Network law and volume")
     draw_steps(springs, result, "spring step", "spring")
@@ -91,7 +97,7 @@ def plot_size(result, path):
          "Bullet 3.24, step, 1 thread", GREEN, "+")
     springs.set_title("Springs with dashpots")
     for axes in (network, springs):
-        axes.legend(fontsize=8)
+        legend(axes)
     figure.savefig(path)
 
 
@@ -108,7 +114,7 @@ def gradients(steps):
 
 
 def plot_implicit(result, steps, path):
-    figure, panels = plt.subplots(1, 3 if steps else 2, figsize=(13.5 if steps else 10, 4.4),
+    figure, panels = plt.subplots(1, 3 if steps else 2, figsize=(13.5 if steps else 10, 5),
                                   layout="constrained")
     frames, products = panels[0], panels[1]
     for kernel, precision, name, colour, marker in (
@@ -124,7 +130,7 @@ def plot_implicit(result, steps, path):
                     va="bottom", color=GREY, fontsize=8)
     logarithmic(frames, "tets", "time of 1/60 s, or of a rest state [ms]")
     frames.set_title("Whole frames, E = 15 kPa, ν = 0.45")
-    frames.legend(fontsize=8)
+    legend(frames)
 
     def per_tet(r):
         return 1e9 * r["time"]["median_s"] / r["tets"] / (r["products"] or 1)
@@ -139,7 +145,7 @@ def plot_implicit(result, steps, path):
          "", ":")
     logarithmic(products, "tets", "time [ns per tet]")
     products.set_title("Parts of a Newton step, 1 thread")
-    products.legend(fontsize=8)
+    legend(products)
 
     if steps:
         solves = panels[2]
@@ -148,10 +154,11 @@ def plot_implicit(result, steps, path):
             points.sort()
             solves.plot([p[0] for p in points], [p[1] for p in points], color=colour, marker=marker,
                         label=f"W({k})")
-        logarithmic(solves, "iterations to a residual of 1e-3 (ν = 0.3 to 0.499)",
+        logarithmic(solves, "iterations to a residual of 1e-3, ν = 0.3 to 0.499",
                     "time of a solve [ms]")
         solves.set_title("Conjugate gradients at rest, 1 thread")
-        solves.legend(fontsize=8)
+        solves.xaxis.set_minor_formatter(lambda v, _: f"{v:.0f}" if f"{v:e}"[0] in "25" else "")
+        legend(solves)
     figure.savefig(path)
 
 
