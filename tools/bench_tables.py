@@ -66,7 +66,11 @@ class Figures:
                  for b in self.result["limits"][0]["bandwidth"].values()]
         titles = ["threads"] + [f"{level}, {size}: copy, triad [GB/s]" for level, size in
                                 zip(self.result["limits"][0]["bandwidth"], sizes)]
-        return text + table(titles + ["FMA [GFLOP/s]"], rows)
+        spreads = sorted(r["time"]["spread"] for r in self.result["rows"])
+        return text + table(titles + ["FMA [GFLOP/s]"], rows) + (
+            f"\nHow much else the machine did: the distance between the quartiles of a row's "
+            f"repetitions is {100 * spreads[len(spreads) // 2]:.0f} % of their median in the "
+            f"middle row, {100 * spreads[-1]:.0f} % in the worst.\n")
 
     def steps(self, kernel, unit, count):
         cells = [(p, t) for p in ("single", "double") for t in self.threads]
@@ -74,7 +78,7 @@ class Figures:
         rows = [[mesh, f"{self.of(kernel, mesh, 'single', 1).get(count, 0):,}"] +
                 [self.ns(kernel, mesh, *cell) for cell in cells] +
                 [self.share(kernel, mesh, "single", 1)] for mesh in self.meshes]
-        return table(titles + ["single, 1 thread"], rows)
+        return table(titles + ["share, single, 1 thread"], rows)
 
     def kernels(self):
         kernels = [("network forces", "single"), ("network gather", "single"),
