@@ -1,6 +1,7 @@
-// What a step costs: springs, limits, the whole Verlet step, the search for the stable step, on
-// W(k) (the beam of the scenes, 20 k^3 tets) and the liver; and what the machine can do, in the
-// same run. Every benchmark of steps prints the hash of the state it ends with.
+// What the pages of docs/methods say of cost, on W(k) (the beam of the scenes, 20 k^3 tets) and the
+// liver: limits, the search for the stable step, Verlet's step beside implicit ones, rest states,
+// iterations of conjugate gradients. Kernels and the machine's own limits: `sinew bench`. Every
+// benchmark of steps prints the hash of the state it ends with.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -11,10 +12,11 @@
 #include "sinew/base/hash.h"
 #include "sinew/base/parallel.h"
 #include "sinew/forces/limits.h"
-#include "sinew/forces/packed.h"
-#include "sinew/forces/springs.h"
+#include "sinew/forces/stiffness.h"
+#include "sinew/forces/terms.h"
 #include "sinew/scene/build.h"
 #include "sinew/solver/implicit.h"
+#include "sinew/solver/linear_solver.h"
 #include "sinew/solver/stable_step.h"
 #include "sinew/solver/static.h"
 #include "sinew/solver/verlet.h"
@@ -37,15 +39,6 @@ void per_spring(benchmark::State& state, const Model& model) {
   state.counters["per_spring"] = benchmark::Counter(
       static_cast<double>(state.iterations()) * static_cast<double>(model.spring_count()),
       benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-}
-
-void SpringForces(benchmark::State& state) {
-  const ThreadLimit one(1);
-  const Model model = model_of(state.range(0));
-  Workspace workspace(model);
-  const State s = initial_state(model);
-  for (auto _ : state) benchmark::DoNotOptimize(compute_spring_forces(model, s, workspace));
-  per_spring(state, model);
 }
 
 void VerletStep(benchmark::State& state) {
@@ -92,23 +85,6 @@ Model network_beam(std::int64_t k, std::int64_t kilopascals) {
   return model_of(k, {"beam.law=neo-hookean", fmt::format("beam.young={}e3", kilopascals)});
 }
 
-// Verlet's step of the network law without dashpots, in double (range(1) = 0) and single precision.
-void NetworkStep(benchmark::State& state) {
-  const ThreadLimit limit(static_cast<int>(state.range(2)));
-  const Model model =
-      model_of(state.range(0), {"beam.law=neo-hookean", "beam.damping_ratio=0", "beam.drag=5"});
-  Workspace workspace(model);
-  State s = initial_state(model);
-  const double h = 0.5 * find_stable_step(model, s.position, workspace).step;
-  if (state.range(1) == 1) workspace.packed = std::make_shared<PackedForces>(model);
-  for (int i = 0; i < 20; ++i) verlet_step(model, h, s, workspace);
-  state.SetLabel("state after 20 steps " + hex(s.hash()));
-  for (auto _ : state) verlet_step(model, h, s, workspace);
-  state.counters["per_tet"] = benchmark::Counter(
-      static_cast<double>(state.iterations()) * static_cast<double>(model.tet_count()),
-      benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
-}
-
 // Gravity on W(k) to a residual of 0.1, which leaves 0.1 % of the tip's way.
 void StaticSolve(benchmark::State& state) {
   const ThreadLimit one(1);
@@ -125,6 +101,28 @@ void StaticSolve(benchmark::State& state) {
   state.SetLabel("state " + hex(s.hash()));
   state.counters["newton"] = report.newton;
   state.counters["products"] = report.products;
+}
+
+// Conjugate gradients to 1e-3 for the beam's weight, at rest: nu = range(1) / 1000, E = 10^range(2)
+// Pa where it is above 0 and then in a step of 1/60 s, else 1.5 MPa and no inertia. The tables of
+// docs/methods/linear-solver.md.
+void ConjugateGradients(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const bool step = state.range(2) > 0;
+  const std::string young = step ? fmt::format("1e{}", state.range(2)) : "1.5e6";
+  const Model model = model_of(
+      state.range(0), {"beam.law=neo-hookean", "beam.young=" + young,
+                       fmt::format("beam.poisson={}", 1e-3 * static_cast<double>(state.range(1)))});
+  Workspace workspace(model);
+  LinearSolver solver(model);
+  const Objective objective{.model = model, .inertia = step ? 3600.0 : 0.0};
+  prepare_stiffness(model, model.rest_position, workspace);
+  solver.assemble(objective, model.rest_position, workspace);
+  const Field weight = outer_forces(model, initial_state(model));
+  Field p;
+  int products = 0;
+  for (auto _ : state) products = solver.solve(weight, 1e-3, 1000, {}, p);
+  state.counters["iterations"] = products;
 }
 
 // A frame of 1/60 s in a single step, mean over the first 30 of the fall.
@@ -172,41 +170,18 @@ void StableStepSearch(benchmark::State& state) {
   state.counters["products"] = products;
 }
 
-// The machine's own limits: copying arrays of doubles, and multiply-adds on registers.
-void MachineCopy(benchmark::State& state) {
-  const auto bytes = static_cast<std::size_t>(state.range(0)) * 1024;
-  std::vector<double> from(bytes / 16, 1.0), to(bytes / 16);
-  for (auto _ : state) {
-    std::copy(from.begin(), from.end(), to.begin());
-    benchmark::ClobberMemory();
-  }
-  state.SetBytesProcessed(static_cast<std::int64_t>(state.iterations()) *
-                          static_cast<std::int64_t>(bytes));
-}
-
-void MachineMultiplyAdd(benchmark::State& state) {
-  double a[16];
-  for (double& x : a) x = 1.0;
-  for (auto _ : state) {
-    for (double& x : a) x = x * 0.999999 + 1e-6;
-    benchmark::DoNotOptimize(a);
-  }
-  state.counters["flops"] = benchmark::Counter(32.0 * static_cast<double>(state.iterations()),
-                                               benchmark::Counter::kIsRate);
-}
-
 }  // namespace
 
-BENCHMARK(MachineCopy)->Arg(256)->Arg(8 << 10)->Arg(256 << 10);  // KiB: L2, L3, memory
-BENCHMARK(MachineMultiplyAdd);
-BENCHMARK(SpringForces)->Arg(4)->Arg(8)->Arg(17)->Arg(0);
 BENCHMARK(VerletStep)->ArgsProduct({{4, 8, 17, 0}, {1, 2}})->UseRealTime();
-BENCHMARK(NetworkStep)->ArgsProduct({{4, 8, 17, 37}, {0, 1}, {1, 2}})->UseRealTime();
 BENCHMARK(ImplicitStep)->ArgsProduct({{4, 8, 0}, {1, 3, 6}})->Unit(benchmark::kMillisecond);
 BENCHMARK(StaticSolve)->Arg(4)->Arg(8)->Arg(17)->Unit(benchmark::kMillisecond);
 BENCHMARK(ImplicitFrame)
     ->ArgsProduct({{4, 8, 17}, {15, 1500}})
     ->Iterations(30)
+    ->Unit(benchmark::kMillisecond);
+BENCHMARK(ConjugateGradients)
+    ->ArgsProduct({{4, 8, 17}, {300, 450, 490, 499}, {0}})
+    ->ArgsProduct({{4, 8}, {450}, {3, 4, 5, 6, 7, 9}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(LimitSweep)->Arg(4)->Arg(8)->Arg(0);
 BENCHMARK(StableStepSearch)->Arg(4)->Arg(8)->Arg(0)->Unit(benchmark::kMillisecond);

@@ -20,7 +20,7 @@ _sinew() {
   local meshes=(mesh msh vtk vtu node ele)
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    _sinew_words "run resume info convert identify converge validate materials completion --help --version"
+    _sinew_words "run resume info convert identify converge validate materials bench completion --help --version"
     return
   fi
   case ${COMP_WORDS[1]}:$previous in
@@ -47,7 +47,11 @@ _sinew() {
       return
       ;;
     identify:--young | identify:--poisson | identify:--density | identify:--damping-ratio) return ;;
-    *:--threads | *:--set | *:--scale | *:--levels) return ;;
+    bench:--json | bench:--peer)
+      _sinew_files '*'
+      return
+      ;;
+    *:--meshes | *:--filter | *:--seconds | *:--threads | *:--set | *:--scale | *:--levels) return ;;
   esac
   case ${COMP_WORDS[1]}:$cur in
     run:-*) _sinew_words "-o --out --set --force --no-output --json -q --quiet --threads --help" ;;
@@ -64,6 +68,8 @@ _sinew() {
     validate:*) _sinew_words "$(cd validation 2>/dev/null && printf '%s ' *)" ;;
     materials:-*) _sinew_words "--json --help" ;;
     materials:*) _sinew_words "artery brain breast fat heart kidney ligament liver muscle silicone-gel skin tendon" ;;
+    bench:-*) _sinew_words "--meshes --threads --filter --seconds --quick --json --peer -q --quiet --help" ;;
+    bench:*) _sinew_files toml ;;
     completion:*) _sinew_words "bash zsh fish --help" ;;
   esac
 }

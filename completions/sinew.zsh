@@ -17,6 +17,7 @@ _sinew() {
         'converge:See whether the answer depends on the mesh'
         'validate:Compare the laws with reference values'
         'materials:Show the tissue library'
+        'bench:Measure what Sinew costs on this machine'
         'completion:Print a shell completion'
       )
       _describe command commands
@@ -83,6 +84,17 @@ _sinew() {
         materials)
           _arguments '--json[Print JSON]' '--help[Show help]' \
             '1:material:(artery brain breast fat heart kidney ligament liver muscle silicone-gel skin tendon)'
+          ;;
+        bench)
+          _arguments '--meshes[k of the beams]:list:' \
+            '--threads[Threads to measure with]:list:' \
+            '*--filter[Only rows with this in their name]:text:' \
+            '--seconds[Seconds a measurement goes on for]:seconds:' \
+            '--quick[W(4) and W(8), short]' \
+            '--json[Write JSON here]:file:_files' \
+            '--peer[Program whose rows join]:program:_files' \
+            '(-q --quiet)'{-q,--quiet}'[No progress and no table]' \
+            '--help[Show help]' '*:scene:_files -g "*.toml(-.)"'
           ;;
         completion) _arguments '--help[Show help]' '1:shell:(bash zsh fish)' ;;
       esac

@@ -37,6 +37,7 @@ int main(int argc, char** argv) {
   add_identify(app);
   add_validate(app, status);
   add_converge(app, status);
+  add_bench(app, status);
   add_completion(app);
   try {
     app.parse(argc, argv);

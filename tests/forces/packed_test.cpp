@@ -63,11 +63,7 @@ std::vector<Vec3> packed(const Model& m, const State& s, double* heat = nullptr)
   const double power = p.compute(m, s);
   if (heat != nullptr) *heat = power;
   std::vector<Vec3> f(s.position.size());
-  p.for_each_patch([&](Index, std::span<const Index> nodes, const float* force) {
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      if (nodes[k] >= 0) f[uz(nodes[k])] = three_of(force + 4 * k);
-    }
-  });
+  p.gather(f);
   return f;
 }
 

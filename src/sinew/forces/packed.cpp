@@ -181,6 +181,14 @@ void PackedForces::gather(const Patch& patch, float* force) const {
                 {patch.nodes.begin / 2, patch.nodes.end / 2}, force);
 }
 
+void PackedForces::gather(std::span<Vec3> force) const {
+  for_each_patch([&](Index, std::span<const Index> nodes, const float* of_nodes) {
+    for (std::size_t k = 0; k < nodes.size(); ++k) {
+      if (nodes[k] >= 0) force[uz(nodes[k])] = three_of(of_nodes + 4 * k);
+    }
+  });
+}
+
 std::size_t PackedForces::bytes() const {
   const auto of = [](const auto&... arrays) { return ((arrays.size() * sizeof(arrays[0])) + ...); };
   return of(patches_, triads_, node_of_, body_of_, slot_node_, slot_cell_, other_slot_, other_node_,

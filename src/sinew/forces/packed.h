@@ -47,6 +47,8 @@ class PackedForces {
       f(p, std::span(node_of_.data() + patch.nodes.begin, uz(patch.nodes.size())), force.data());
     });
   }
+  // force[i] = the same for node i [N].
+  void gather(std::span<Vec3> force) const;
   Index patch_count() const { return static_cast<Index>(patches_.size()); }
 
   // The tets that compute() saw below half of their volume: those that the guard pushes, or may

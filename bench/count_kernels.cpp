@@ -1,0 +1,137 @@
+// The kernels, each called a fixed number of times on W(4), for tools/count_instructions to count
+// their instructions under valgrind. Prints what it was built with and how much work a call does.
+#include <fmt/format.h>
+
+#include <functional>
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/assemble.h"
+#include "sinew/forces/packed.h"
+#include "sinew/forces/springs.h"
+#include "sinew/forces/stiffness.h"
+#include "sinew/forces/terms.h"
+#include "sinew/forces/volume.h"
+#include "sinew/mesh/shapes.h"
+#include "sinew/solver/tangent_matrix.h"
+#include "sinew/solver/verlet.h"
+#include "sinew/study/bench_loops.h"
+
+// What runs inside of these is counted, by their names.
+#define SINEW_COUNTED(name)                                                                     \
+  extern "C" __attribute__((noinline)) void counted_##name(const std::function<void()>& call) { \
+    for (int i = 0; i < calls; ++i) call();                                                     \
+    asm volatile("");                                                                           \
+  }
+
+namespace {
+
+using namespace sinew;
+
+constexpr int calls = 5;
+constexpr double step = 1e-4;  // [s], well below the stable one
+
+// The beam of the benchmarks, clamped, after some steps.
+struct Bar {
+  explicit Bar(const Material& material) : model(made(material)), workspace(model) {
+    state = initial_state(model);
+    for (int i = 0; i < 10; ++i) verlet_step(model, step, state, workspace);
+  }
+
+  static Model made(const Material& material) {
+    constexpr Index k = 4;
+    Model m;
+    BodySpec body;
+    body.name = "bar";
+    body.mesh = beam(Vec3(0.1, 0.1, 0.4), {k, k, 4 * k});
+    body.materials = {material};
+    body.regions = {"all"};
+    add_body(m, body);
+    Pin clamp;
+    for (Index i = 0; i < m.node_count(); ++i) {
+      if (m.rest_position[uz(i)].z() < 1e-9) clamp.nodes.push_back(i);
+    }
+    m.pins.push_back(clamp);
+    finish(m);
+    return m;
+  }
+
+  const Model model;
+  Workspace workspace;
+  State state;
+};
+
+// After one call outside of what is counted: allocations and first looks are not the kernel's.
+void count(const char* name, void (*counted)(const std::function<void()>&), Index items,
+           const char* unit, const std::function<void()>& call) {
+  call();
+  counted(call);
+  fmt::print("{} {} {}\n", name, static_cast<long>(calls) * items, unit);
+}
+
+}  // namespace
+
+SINEW_COUNTED(single_forces)
+SINEW_COUNTED(single_gather)
+SINEW_COUNTED(single_step)
+SINEW_COUNTED(double_volumes)
+SINEW_COUNTED(double_step)
+SINEW_COUNTED(tangent_assembly)
+SINEW_COUNTED(tangent_product)
+SINEW_COUNTED(single_springs)
+SINEW_COUNTED(single_spring_step)
+SINEW_COUNTED(double_springs)
+SINEW_COUNTED(double_spring_step)
+
+int main() {
+  const ThreadLimit one(1);
+#ifdef __clang__
+  fmt::print("compiler clang {}\n", __clang_major__);
+#else
+  fmt::print("compiler g++ {}\n", __GNUC__);
+#endif
+  fmt::print("target {}\n", study::instruction_set());
+
+  Material network;
+  network.damping_ratio = 0.0;
+  Bar bar(network);
+  const Model& m = bar.model;
+  const Index tets = m.tet_count();
+  const auto count_tets = [&](const char* name, auto counted, const std::function<void()>& call) {
+    count(name, counted, tets, "tet", call);
+  };
+  Workspace& w = bar.workspace;
+  const auto verlet = [](Bar& b) { verlet_step(b.model, step, b.state, b.workspace); };
+  count_tets("double_volumes", counted_double_volumes,
+             [&] { compute_volume_pressures(m, bar.state.position, w); });
+  count_tets("double_step", counted_double_step, [&] { verlet(bar); });
+
+  TangentMatrix matrix(m);
+  const Objective objective{.model = m, .inertia = 3600.0};
+  prepare_stiffness(m, bar.state.position, w);
+  count_tets("tangent_assembly", counted_tangent_assembly,
+             [&] { matrix.assemble(objective, bar.state.position, w); });
+  Field4 u(m.rest_position.size()), out(u);
+  for (std::size_t i = 0; i < u.size(); ++i) u[i] = Float4(m.rest_position[i]);
+  count_tets("tangent_product", counted_tangent_product, [&] { matrix.times(u, out); });
+
+  w.packed = std::make_shared<PackedForces>(m);
+  count_tets("single_forces", counted_single_forces, [&] { w.packed->compute(m, bar.state); });
+  count_tets("single_gather", counted_single_gather, [&] { w.packed->gather(w.force); });
+  count_tets("single_step", counted_single_step, [&] { verlet(bar); });
+
+  Material classic;
+  classic.law = Law::lloyd;
+  Bar springs(classic);
+  Workspace& s = springs.workspace;
+  const auto count_springs = [&](const char* name, auto counted,
+                                 const std::function<void()>& call) {
+    count(name, counted, springs.model.spring_count(), "spring", call);
+  };
+  count_springs("double_springs", counted_double_springs,
+                [&] { compute_spring_forces(springs.model, springs.state, s); });
+  count_springs("double_spring_step", counted_double_spring_step, [&] { verlet(springs); });
+  s.packed = std::make_shared<PackedForces>(springs.model);
+  count_springs("single_springs", counted_single_springs,
+                [&] { s.packed->compute(springs.model, springs.state); });
+  count_springs("single_spring_step", counted_single_spring_step, [&] { verlet(springs); });
+}

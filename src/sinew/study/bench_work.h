@@ -1,0 +1,43 @@
+// How much a kernel has to do at least: the bytes that it must move and the operations that its
+// equations take. docs/performance.md.
+#pragma once
+
+#include "sinew/model/model.h"
+#include "sinew/study/bench_machine.h"
+
+namespace sinew::study {
+
+enum class Precision { single, double_ };
+
+// Bytes: every array that a pass over the model reads or writes, once for each pass, as if all that
+// is used twice within a pass stayed in registers or the nearest cache. Flops: additions,
+// multiplications, divisions and roots of the equations, one each.
+struct Work {
+  double bytes = 0.0;
+  double flops = 0.0;
+  double working_set = 0.0;  // bytes of the arrays, each once
+};
+Work operator+(const Work& a, const Work& b);
+Work operator*(double times, const Work& once);  // the same arrays, so many times
+
+// The parts of a step of Verlet; the counts are those of the arrays in forces/packed.h (single),
+// model.h and workspace.h (double).
+Work forces_work(const Model& model, Precision precision);  // up to the sums at the nodes
+Work gather_work(const Model& model, Precision precision);  // those sums, and the network's rows
+Work update_work(const Model& model);                       // the rest: gravity, drag, the move
+Work step_work(const Model& model, Precision precision);    // all three
+Work springs_work(const Model& model);                      // compute_spring_forces
+Work volumes_work(const Model& model);                      // compute_volume_pressures
+
+// The parts of an iteration of conjugate gradients (solver/tangent_matrix.h).
+Work product_work(const Model& model);    // a product with the tangent
+Work iteration_work(const Model& model);  // with the vectors and the diagonal of the preconditioner
+
+// What keeps work from being done faster, and how long it takes at that bound.
+struct Bound {
+  const char* by = "";   // "L2", "L3", "memory": where the working set fits; "FMA"
+  double seconds = 0.0;  // the longer of bytes / bandwidth and flops / rate
+};
+Bound bound_of(const Work& work, const CacheSizes& caches, const MachineLimits& limits);
+
+}  // namespace sinew::study
