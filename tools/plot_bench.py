@@ -98,7 +98,7 @@ def plot_size(result, path):
     springs.set_title("Springs with dashpots")
     for axes in (network, springs):
         legend(axes)
-    figure.savefig(path)
+    figure.savefig(path, bbox_inches="tight")
 
 
 def gradients(steps):
@@ -159,7 +159,7 @@ def plot_implicit(result, steps, path):
         solves.set_title("Conjugate gradients at rest, 1 thread")
         solves.xaxis.set_minor_formatter(lambda v, _: f"{v:.0f}" if f"{v:e}"[0] in "25" else "")
         legend(solves)
-    figure.savefig(path)
+    figure.savefig(path, bbox_inches="tight")
 
 
 def main():
