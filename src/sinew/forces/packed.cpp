@@ -52,7 +52,7 @@ void PackedForces::compute_frames(const Model& model, const State& state) {
 }
 
 void PackedForces::fill_slots(const Model& model, const State& state, const Patch& patch) {
-  if (patch.nodes.size() == 0) {  // loose springs
+  if (patch.is_loose()) {
     for (auto s = uz(patch.slots.begin); s < uz(patch.slots.end); ++s) {
       const std::span<const Index> node(&node_of_[uz(slot_node_[s])], 1);
       packed_displacements(Frame(), node, model.rest_position.data(), state.position.data(),
@@ -143,7 +143,7 @@ double PackedForces::compute(const Model& model, const State& state) {
       heat[uz(p)] = packed_spring_forces(stars_of(patch), u,
                                          slot_velocity_.data() + 4 * patch.slots.begin, force);
     }
-    if (patch.nodes.size() == 0) turn_loose_forces(patch);
+    if (patch.is_loose()) turn_loose_forces(patch);
   });
   low_tets_.clear();
   for (std::size_t p = 0; p < patches_.size(); ++p) {

@@ -77,6 +77,9 @@ class PackedForces {
     Groups fans;
     Groups stars;
     Index first_tet = 0;  // in tet_id_ and tet_change_
+
+    // Springs between bodies and to points, in no body's frame.
+    bool is_loose() const { return body < 0 && nodes.size() == 0; }
   };
   // Three nodes of a body, far apart, whose way its frame follows.
   using Triad = std::array<Index, 3>;

@@ -15,7 +15,8 @@ namespace {
 
 constexpr std::size_t longest_fan = 6;
 constexpr std::size_t longest_star = 8;
-constexpr std::size_t springs_of_loose_patch = 512;
+constexpr std::size_t most_slots = 0x10000 / 4;  // of a patch: 4 x slot has 16 bits
+constexpr std::size_t most_slots_of_group = 8 * (3 + std::max(longest_fan, longest_star));
 
 // Three nodes of the body: one in its middle, the farthest from it, the farthest from their line.
 std::array<Index, 3> triad_of(const Model& model, const Body& body) {
@@ -68,12 +69,13 @@ class Packer {
       fans[uz(p)] = cut_into_fans(model_.tets, tets[uz(p)], model_.tet_region, longest_fan);
     });
     for (std::size_t p = 0; p < patches; ++p) {
-      begin_patch(to_.patches_[p]);
+      begin_patch(static_cast<Index>(p));
       group_by_length(std::move(fans[p]), [&](std::size_t length, std::span<const Fan> group) {
+        make_room();
         pack_fans(length, group);
       });
       pack_springs(springs[p]);
-      end_patch(to_.patches_[p]);
+      end_patch();
     }
     pack_loose(loose);
     list_slots();
@@ -132,7 +134,9 @@ class Packer {
 
   // --- slots: one for each pair of a node and a cell; the first are the patch's own nodes ---
 
-  void begin_patch(PackedForces::Patch& patch) {
+  void begin_patch(Index p) {
+    patch_ = p;
+    PackedForces::Patch& patch = to_.patches_[uz(p)];
     for (auto s = first_slot_; s < to_.slot_node_.size(); ++s) {
       slot_of_[uz(to_.slot_node_[s])] = -1;
     }
@@ -145,11 +149,27 @@ class Packer {
     patch.stars = {{size(to_.star_length_), 0}, size(to_.star_corner_), size(to_.star_data_)};
   }
 
-  void end_patch(PackedForces::Patch& patch) {
+  void end_patch() {
+    PackedForces::Patch& patch = to_.patches_[uz(patch_)];
     patch.slots.end = size(to_.slot_node_);
     patch.fans.groups.end = size(to_.fan_length_);
     patch.stars.groups.end = size(to_.star_length_);
     std::replace(to_.slot_cell_.begin() + patch.slots.begin, to_.slot_cell_.end(), free_cell, -1);
+  }
+
+  // Goes on in a patch without nodes of its own where the next group may need more slots than can
+  // be counted: a node may have any number of tets and springs.
+  void make_room() {
+    if (to_.slot_node_.size() - first_slot_ + most_slots_of_group <= most_slots) return;
+    const Index body = to_.patches_[uz(patch_)].body;
+    end_patch();
+    add_patch(body);
+  }
+  void add_patch(Index body) {
+    PackedForces::Patch patch;
+    patch.body = body;
+    to_.patches_.push_back(patch);
+    begin_patch(to_.patch_count() - 1);
   }
 
   template <class T>
@@ -250,6 +270,7 @@ class Packer {
       list.back().springs.push_back(s);
     }
     group_by_length(std::move(list), [&](std::size_t length, std::span<const Star> group) {
+      make_room();
       pack_stars(length, group);
     });
   }
@@ -286,15 +307,10 @@ class Packer {
 
   // Springs between bodies and to anchors: patches without nodes of their own, in no body's frame.
   void pack_loose(const std::vector<Index>& springs) {
-    for (std::size_t first = 0; first < springs.size(); first += springs_of_loose_patch) {
-      const auto last = std::min(first + springs_of_loose_patch, springs.size());
-      PackedForces::Patch patch;
-      begin_patch(patch);
-      pack_springs({springs.begin() + static_cast<std::ptrdiff_t>(first),
-                    springs.begin() + static_cast<std::ptrdiff_t>(last)});
-      end_patch(patch);
-      to_.patches_.push_back(patch);
-    }
+    if (springs.empty()) return;
+    add_patch(-1);
+    pack_springs(springs);
+    end_patch();
   }
 
   // --- lists ---
@@ -396,7 +412,8 @@ class Packer {
   std::vector<double> weight_;    // (cells)
   std::vector<Index> slot_of_;    // the node's first slot in the patch (packed nodes) -1: none
   std::map<std::pair<Index, Index>, Index> other_slots_;  // (packed node, cell) -> further slots
-  std::size_t first_slot_ = 0;
+  std::size_t first_slot_ = 0;                            // of the patch
+  Index patch_ = 0;                                       // that is being packed
 };
 
 PackedForces::PackedForces(const Model& model) {
