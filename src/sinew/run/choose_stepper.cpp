@@ -27,7 +27,7 @@ struct Trial {
   double steps = 0.0;     // a frame
   double newton = 0.0;    // Newton steps a frame
   double products = 0.0;  // Hessian products a frame
-  double work = 0.0;      // of a frame, in steps of Verlet
+  double work = 0.0;      // of a frame, in steps of Verlet in double precision
 };
 
 // Nothing where a step finds no equilibrium.
@@ -73,10 +73,11 @@ Choice choose_stepper(const Scene& scene, const Model& model, const State& start
                                          1e3 * contest.stable_step, verlet_work);
   const auto trial = try_implicit(model, contest, options, start, stepper);
   if (!trial) return {"verlet", verlet + "; implicit: a trial step found no equilibrium"};
-  return {trial->work < verlet_work ? "implicit" : "verlet",
+  const double work = trial->work / (scene.precision == "single" ? single_step_cost : 1.0);
+  return {work < verlet_work ? "implicit" : "verlet",
           fmt::format("{}; implicit: {:.1f} Newton steps and {:.1f} products a frame, the work of "
                       "{:.0f} steps of Verlet",
-                      verlet, trial->newton, trial->products, trial->work)};
+                      verlet, trial->newton, trial->products, work)};
 }
 
 }  // namespace sinew
