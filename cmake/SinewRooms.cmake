@@ -6,8 +6,14 @@ find_package(TBB REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(hwy REQUIRED)
+find_library(XXHASH_LIBRARY xxhash REQUIRED)
+find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
+add_library(xxhash INTERFACE)
+target_link_libraries(xxhash INTERFACE ${XXHASH_LIBRARY})
+target_include_directories(xxhash SYSTEM INTERFACE ${XXHASH_INCLUDE_DIR})
 find_package(tomlplusplus REQUIRED)
 find_package(nlohmann_json REQUIRED)
+find_package(Boost 1.74 REQUIRED)
 
 add_library(sinew_flags INTERFACE)
 # The same scene gives the same bits: no fused multiply-adds behind our back, no -march=native.
@@ -65,7 +71,8 @@ function(sinew_embed room file symbol)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
   file(READ ${path} text)
   set(source ${CMAKE_BINARY_DIR}/embedded/${symbol}.cpp)
-  string(CONCAT code "// Generated from ${file}.\nnamespace sinew {\n"
+  string(CONCAT code "// Generated from ${file}.\n"
+    "#pragma GCC diagnostic ignored \"-Woverlength-strings\"\nnamespace sinew {\n"
     "extern const char ${symbol}[];\n"
     "const char ${symbol}[] = R\"embedded(${text})embedded\";\n}  // namespace sinew\n")
   file(CONFIGURE OUTPUT ${source} CONTENT "@code@" @ONLY)

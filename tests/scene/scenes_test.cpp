@@ -46,6 +46,7 @@ TEST_P(Scenes, AreWhollyInTheirDocument) {
 }
 
 TEST_P(Scenes, HoldAtTheirStableStep) {
+  if (test::sanitized && GetParam().stem() == "liver-fine") return;  // as liver.toml
   const Scene scene = load_scene(GetParam());
   const Model model = build_model(scene);
   Workspace workspace(model);
@@ -89,6 +90,7 @@ TEST(TalkScenes, BadConstantsBlowUpAndGoodOnesHold) {
 }
 
 TEST(TalkScenes, LimitsHoldTheTissue) {
+  if (test::sanitized) return;  // thousands of steps of what the solver's tests run, too
   const Scene free = shipped("talk-tissue.toml");
   const Scene limited = shipped("talk-tissue-limits.toml");
   const Model free_model = build_model(free);

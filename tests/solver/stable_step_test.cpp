@@ -74,6 +74,7 @@ bool stays_bounded(const Model& m, double h) {
 
 TEST(StableStep, IsSharpOnTissueWithAndWithoutDamping) {
   for (const double zeta : {0.0, 0.1, 1.0}) {
+    if (test::sanitized && zeta != 0.1) continue;
     Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = zeta}, {3, 3, 3});
     m.gravity = Vec3::Zero();
     m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
@@ -86,10 +87,9 @@ TEST(StableStep, IsSharpOnTissueWithAndWithoutDamping) {
 }
 
 TEST(StableStep, IsSharpOnViscousTissue) {
+  if (test::sanitized) return;  // thousands of steps of what the test above runs, too
   for (const double zeta : {0.05, 0.2, 1.0}) {
-    if (test::sanitized && zeta != 0.05) continue;
-    const Index k = test::sanitized ? 2 : 3;
-    Model m = tissue_box({.damping = Damping::material, .damping_ratio = zeta}, {k, k, k});
+    Model m = tissue_box({.damping = Damping::material, .damping_ratio = zeta}, {3, 3, 3});
     m.gravity = Vec3::Zero();
     m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
     finish(m);

@@ -346,7 +346,7 @@ TEST(Verlet, ANonFiniteStateStopsAtThatStepAndNamesThePlace) {
 TEST(Verlet, FindsBackFromTangledStarts) {
   for (const bool held : {false, true}) {
     for (const test::Tangle tangle : test::tangles) {
-      if (test::sanitized && tangle != test::Tangle::random) continue;
+      if (test::sanitized && (!held || tangle != test::Tangle::random)) continue;
       Material material;
       material.young = 1e4;
       material.damping_ratio = 0.3;

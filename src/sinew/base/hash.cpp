@@ -1,17 +1,27 @@
 #include "sinew/base/hash.h"
 
 #include <fmt/format.h>
+#include <xxhash.h>
+
+#include <new>
 
 namespace sinew {
 
+Hash::Hash() : state_(XXH64_createState()) {
+  if (!state_) throw std::bad_alloc();
+  XXH64_reset(state_.get(), 0);
+}
+
+void Hash::Free::operator()(XXH64_state_s* state) const {
+  XXH64_freeState(state);
+}
+
 void Hash::bytes(const void* data, std::size_t size) {
-  const auto* p = static_cast<const unsigned char*>(data);
-  std::uint64_t h = state_;
-  for (std::size_t i = 0; i < size; ++i) {
-    h ^= p[i];
-    h *= 1099511628211ULL;
-  }
-  state_ = h;
+  XXH64_update(state_.get(), data, size);
+}
+
+std::uint64_t Hash::digest() const {
+  return XXH64_digest(state_.get());
 }
 
 std::string hex(std::uint64_t digest) {

@@ -1,18 +1,22 @@
 // A 64-bit hash of plain data: names a state, a scene or a mesh, so that two runs can be compared.
-// FNV-1a (Fowler, Noll, Vo), applied to bytes. Not cryptographic.
+// XXH64 of the bytes (xxhash.com). Not cryptographic.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
+struct XXH64_state_s;
+
 namespace sinew {
 
 class Hash {
  public:
+  Hash();
   void bytes(const void* data, std::size_t size);
   void text(std::string_view s) {
     value(s.size());
@@ -28,10 +32,13 @@ class Hash {
     if (!v.empty()) bytes(v.data(), v.size() * sizeof(T));
   }
 
-  std::uint64_t digest() const { return state_; }
+  std::uint64_t digest() const;
 
  private:
-  std::uint64_t state_ = 14695981039346656037ULL;
+  struct Free {
+    void operator()(XXH64_state_s* state) const;
+  };
+  std::unique_ptr<XXH64_state_s, Free> state_;
 };
 
 // 16 lower-case hexadecimal digits.

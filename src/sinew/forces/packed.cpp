@@ -55,9 +55,8 @@ void PackedForces::fill_slots(const Model& model, const State& state, const Patc
   if (patch.is_loose()) {
     for (auto s = uz(patch.slots.begin); s < uz(patch.slots.end); ++s) {
       const std::span<const Index> node(&node_of_[uz(slot_node_[s])], 1);
-      packed_displacements(Frame(), node, model.rest_position.data(), state.position.data(),
-                           state.half_velocity.data(), &slot_displacement_[4 * s],
-                           &slot_velocity_[4 * s]);
+      frame_displacements(Frame(), node, model, state, &slot_displacement_[4 * s],
+                          &slot_velocity_[4 * s]);
     }
     return;
   }
@@ -108,14 +107,17 @@ PackedGroups PackedForces::stars_of(const Patch& patch) const {
 
 double PackedForces::compute(const Model& model, const State& state) {
   compute_frames(model, state);
+  return compute_nearby(model, state);
+}
+
+double PackedForces::compute_nearby(const Model& model, const State& state) {
   parallel_tasks(patch_count(), [&](Index p) {
     const FlushDenormals flush;
     const Patch& patch = patches_[uz(p)];
     const auto first = uz(patch.nodes.begin);
-    packed_displacements(frame_of(patch.body), {node_of_.data() + first, uz(patch.nodes.size())},
-                         model.rest_position.data(), state.position.data(),
-                         state.half_velocity.data(), displacement_.data() + 4 * first,
-                         velocity_.empty() ? nullptr : velocity_.data() + 4 * first);
+    frame_displacements(frame_of(patch.body), {node_of_.data() + first, uz(patch.nodes.size())},
+                        model, state, displacement_.data() + 4 * first,
+                        velocity_.empty() ? nullptr : velocity_.data() + 4 * first);
   });
   parallel_tasks(patch_count(), [&](Index p) {
     const FlushDenormals flush;

@@ -35,6 +35,9 @@ class PackedForces {
   // Computes what tets and springs do at the state's positions and velocities; for_each_patch()
   // adds it up. Returns the power that the springs' dashpots turn into heat [W].
   double compute(const Model& model, const State& state);
+  // The same where the positions are near those of the last compute(), whose frames are kept: a
+  // node that is where it was has the same displacement to the bit.
+  double compute_nearby(const Model& model, const State& state);
 
   // Calls f(patch, nodes, forces) for every patch, in parallel, with what network, volume terms and
   // springs do to its nodes [N]: four floats a node. A node of -1 is none.

@@ -196,29 +196,6 @@ double spring_forces(const PackedGroups& stars, const float* u, const float* vel
   return sum;
 }
 
-// R^T x, in one order.
-HWY_INLINE Vec3 turned_back(const Mat3& R, const Vec3& x) {
-  return {R(0, 0) * x[0] + R(1, 0) * x[1] + R(2, 0) * x[2],
-          R(0, 1) * x[0] + R(1, 1) * x[1] + R(2, 1) * x[2],
-          R(0, 2) * x[0] + R(1, 2) * x[1] + R(2, 2) * x[2]};
-}
-
-void displacements(const Frame& frame, std::span<const Index> nodes, const Vec3* rest,
-                   const Vec3* position, const Vec3* velocity, float* u, float* v) {
-  const auto put = [](const Vec3& x, float* to) {
-    to[0] = static_cast<float>(x[0]);
-    to[1] = static_cast<float>(x[1]);
-    to[2] = static_cast<float>(x[2]);
-  };
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    if (nodes[k] < 0) continue;
-    const auto i = uz(nodes[k]);
-    const Vec3 way = turned_back(frame.rotation, position[i] - frame.centre);
-    put(way - (rest[i] - frame.rest_centre), u + 4 * k);
-    if (v != nullptr) put(turned_back(frame.rotation, velocity[i] - frame.velocity), v + 4 * k);
-  }
-}
-
 // sum_j k_ij u_j for both nodes of a pair, or for one of them where lanes are four: every fourth
 // place of the list has a sum of its own.
 template <class D>
@@ -290,7 +267,6 @@ namespace sinew {
 HWY_EXPORT(volumes);
 HWY_EXPORT(tet_forces);
 HWY_EXPORT(spring_forces);
-HWY_EXPORT(displacements);
 HWY_EXPORT(gather);
 
 void packed_volumes(const PackedGroups& fans, const float* u, float* change, float* force) {
@@ -305,11 +281,6 @@ float packed_tet_forces(const PackedGroups& fans, const float* u, const float* c
 double packed_spring_forces(const PackedGroups& stars, const float* u, const float* velocity,
                             float* force) {
   return HWY_DYNAMIC_DISPATCH(spring_forces)(stars, u, velocity, force);
-}
-
-void packed_displacements(const Frame& frame, std::span<const Index> nodes, const Vec3* rest,
-                          const Vec3* position, const Vec3* velocity, float* u, float* v) {
-  HWY_DYNAMIC_DISPATCH(displacements)(frame, nodes, rest, position, velocity, u, v);
 }
 
 void packed_gather(const Frame& frame, const PackedRows& rows, const PackedSlots& slots,

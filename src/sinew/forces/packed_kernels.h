@@ -8,9 +8,9 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 
 #include "sinew/base/vec.h"
+#include "sinew/forces/node_kernels.h"
 
 namespace sinew {
 
@@ -42,17 +42,6 @@ float packed_tet_forces(const PackedGroups& fans, const float* u, const float* c
 // Adds the forces of the springs; returns the heat of the dashpots [W].
 double packed_spring_forces(const PackedGroups& stars, const float* u, const float* velocity,
                             float* force);
-
-// The way a body has gone as a whole, which its displacements leave out: x = c + R (X - C + u).
-struct Frame {
-  Mat3 rotation = Mat3::Identity();  // R
-  Vec3 centre = Vec3::Zero();        // c [m]
-  Vec3 rest_centre = Vec3::Zero();   // C [m]
-  Vec3 velocity = Vec3::Zero();      // of the centre [m/s]
-};
-// u and, where asked for, R^T (v - the centre's velocity) of the nodes, four floats each.
-void packed_displacements(const Frame& frame, std::span<const Index> nodes, const Vec3* rest,
-                          const Vec3* position, const Vec3* velocity, float* u, float* v);
 
 // Rows of the network in pairs: both nodes of a pair pull on the same list of nodes.
 struct PackedRows {

@@ -125,6 +125,7 @@ void put_tangled_bodies_at_rest(const Model& model, const Workspace& workspace, 
 
 void right_tangled_bodies(const Model& model, const State& state, double h, Workspace& workspace) {
   const std::vector<Vec3>& x = state.position;
+  if (!workspace.has_tets) compute_volume_pressures(model, x, workspace);
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     if (workspace.tangled[b] == 0) continue;
     const Body& body = model.bodies[b];

@@ -7,16 +7,16 @@
 namespace sinew {
 
 Workspace::Workspace(const Model& model)
-    : spring_force(model.springs.size(), Vec3::Zero()),
+    : spring_force(model.springs.size()),
       force(model.rest_position.size(), Vec3::Zero()),
       obstacle_center(obstacle_centers(model, 0.0)),
       viscous_force(model.viscous_node.size(), Vec3::Zero()) {
   if (!model.has_volume) return;
+  // Vectors of Vec3 stay as they are until they are used: pages that nothing touches take no
+  // memory.
   tet_volume.resize(model.tets.size());
   tet_gradient.resize(model.tets.size());
   tet_pressure.resize(model.tets.size());
-  tet_pressure_change.resize(model.tets.size());
-  tet_rate.resize(model.tets.size());
   tet_force.resize(4 * model.tets.size());
   cell_pressure.resize(model.cell_volume.size());
   cell_rate.resize(model.cell_volume.size());

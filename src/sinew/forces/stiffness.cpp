@@ -5,6 +5,7 @@
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/springs.h"
+#include "sinew/forces/tethers.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 
@@ -33,22 +34,35 @@ void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double
   }
   const bool volume = model.has_volume && a != 0.0;
   const bool network = !model.network_start.empty() && a != 0.0;
-  const bool viscous = !model.tet_viscosity.empty() && b != 0.0;
-  const bool pressed = only_stiffening && !model.obstacles.empty();
   if (volume) compute_volume_force_change(model, x, a, u, workspace);
-  if (viscous) compute_viscous_forces(model, x, u, workspace);
+  prepare_outer_product(model, x, b, u, workspace);
   parallel_for(model.node_count(), [&](Index i) {
     const auto n = uz(i);
     out[n] = Vec3::Zero();
     if (model.inverse_mass[n] == 0.0) return;
-    out[n] = b * model.drag[n] * model.mass[n] * u[n] - gather_springs(model, workspace, i);
+    out[n] = outer_product(model, a, b, u[n], i, tangent, workspace) -
+             gather_springs(model, workspace, i);
     if (network) out[n] -= a * network_pull(model, u, i);
     if (volume) out[n] -= gather_tets(model, workspace, i);
-    if (viscous) out[n] -= b * gather_viscous(model, workspace, i);
-    if (pressed) out[n] += a * largest_obstacle_stiffness(model, i) * u[n];
   });
   if (!only_stiffening)
     add_obstacle_stiffness_times(model, x, workspace.obstacle_center, a, u, false, out);
+  if (a != 0.0) add_tether_stiffness_times(model, a, u, out);
+}
+
+void prepare_outer_product(const Model& model, std::span<const Vec3> x, double b,
+                           std::span<const Vec3> u, Workspace& workspace) {
+  if (!model.tet_viscosity.empty() && b != 0.0) compute_viscous_forces(model, x, u, workspace);
+}
+
+Vec3 outer_product(const Model& model, double a, double b, const Vec3& u, Index i, Tangent tangent,
+                   const Workspace& workspace) {
+  Vec3 out = b * model.drag[uz(i)] * model.mass[uz(i)] * u;
+  if (!model.tet_viscosity.empty() && b != 0.0) out -= b * gather_viscous(model, workspace, i);
+  if (tangent == Tangent::only_stiffening && !model.obstacles.empty()) {
+    out += a * largest_obstacle_stiffness(model, i) * u;
+  }
+  return out;
 }
 
 }  // namespace sinew

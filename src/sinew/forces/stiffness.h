@@ -25,4 +25,11 @@ void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double
                              std::span<const Vec3> u, Tangent tangent, Workspace& workspace,
                              std::span<Vec3> out);
 
+// What is in (a K + b C) u besides springs, network and volume, of node i: drag, viscosity and,
+// where only what stiffens counts, obstacles. To be called after prepare_outer_product().
+void prepare_outer_product(const Model& model, std::span<const Vec3> x, double b,
+                           std::span<const Vec3> u, Workspace& workspace);
+Vec3 outer_product(const Model& model, double a, double b, const Vec3& u, Index i, Tangent tangent,
+                   const Workspace& workspace);
+
 }  // namespace sinew

@@ -3,9 +3,11 @@
 #include "sinew/base/parallel.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/network.h"
+#include "sinew/forces/node_kernels.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/packed.h"
 #include "sinew/forces/springs.h"
+#include "sinew/forces/tethers.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
@@ -29,19 +31,6 @@ double outer_potential(const Model& model, const State& state) {
 double compute_forces(const Model& model, const State& state, Workspace& workspace) {
   double power = 0.0;
   const bool viscous = !model.tet_viscosity.empty();
-  // Writes the node's force, of which `inner` is given; returns the power of its drag.
-  const auto finish = [&](Index i, Vec3 inner) {
-    const auto k = uz(i);
-    double drag_power = 0.0;
-    if (viscous) inner += gather_viscous(model, workspace, i);
-    if (model.inverse_mass[k] > 0.0) {
-      const Vec3& w = state.half_velocity[k];
-      inner += model.mass[k] * (model.gravity - model.drag[k] * w);
-      drag_power = model.mass[k] * model.drag[k] * w.squaredNorm();
-    }
-    workspace.force[k] = inner;
-    return drag_power;
-  };
   if (viscous) {
     power += compute_viscous_forces(model, state.position, state.half_velocity, workspace);
   }
@@ -52,11 +41,8 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
     workspace.has_tets = false;
     workspace.partial.assign(uz(packed.patch_count()), 0.0);
     packed.for_each_patch([&](Index patch, std::span<const Index> nodes, const float* force) {
-      double drag_power = 0.0;
-      for (std::size_t k = 0; k < nodes.size(); ++k) {
-        if (nodes[k] >= 0) drag_power += finish(nodes[k], three_of(force + 4 * k));
-      }
-      workspace.partial[uz(patch)] = drag_power;
+      workspace.partial[uz(patch)] =
+          add_gravity_and_drag(model, state.half_velocity, nodes, force, workspace.force);
     });
   } else {
     power += compute_spring_forces(model, state, workspace);
@@ -64,20 +50,25 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
     const bool network = !model.network_start.empty();
     workspace.partial.assign(uz(block_count(model.node_count())), 0.0);
     parallel_blocks(model.node_count(), [&](Index b, Range r) {
-      double drag_power = 0.0;
       for (Index i = r.begin; i < r.end; ++i) {
         Vec3 f = gather_springs(model, workspace, i);
         if (network) f += network_pull(model, state.position, i);
         if (model.has_volume) f += push_of_tets(model, workspace, i);
-        drag_power += finish(i, f);
+        workspace.force[uz(i)] = f;
       }
-      workspace.partial[uz(b)] = drag_power;
+      workspace.partial[uz(b)] =
+          add_gravity_and_drag(model, state.half_velocity, r, workspace.force);
     });
+  }
+  if (viscous) {
+    parallel_for(model.node_count(),
+                 [&](Index i) { workspace.force[uz(i)] += gather_viscous(model, workspace, i); });
   }
   for (const double p : workspace.partial) power += p;
 
   add_load_forces(model, state.position, state.time, 1.0, workspace.force);
   add_obstacle_forces(model, state.position, state.time, workspace.force);
+  add_tether_forces(model, state.position, workspace.force);
   workspace.obstacle_center = obstacle_centers(model, state.time);
   return power;
 }
@@ -103,18 +94,19 @@ std::vector<Vec3> outer_forces(const Model& model, const State& state) {
   });
   add_load_forces(model, state.position, state.time, 1.0, f);
   add_obstacle_forces(model, state.position, state.time, f);
+  add_tether_forces(model, state.position, f);
   return f;
 }
 
 double potential_energy(const Model& model, const State& state, Workspace& workspace) {
   return elastic_energy(model, state.position, workspace) + outer_potential(model, state) +
-         obstacle_energy(model, state.position, state.time);
+         obstacle_energy(model, state.position, state.time) + tether_energy(model, state.position);
 }
 
 Energies measure_energies(const Model& model, const State& state, Workspace& workspace) {
   compute_forces(model, state, workspace);
   if (model.has_volume && !workspace.has_tets) {
-    compute_volume_pressures(model, state.position, workspace);
+    compute_pressures(model, state.position, workspace);
   }
   const std::vector<Vec3> v = synchronous_velocity(model, state, workspace);
   Energies e;
@@ -128,7 +120,8 @@ Energies measure_energies(const Model& model, const State& state, Workspace& wor
     return -model.mass[k] * model.gravity.dot(state.position[k] - model.rest_position[k]);
   });
   e.elastic = elastic_energy(model, state.position, workspace);
-  e.contact = obstacle_energy(model, state.position, state.time);
+  e.contact =
+      obstacle_energy(model, state.position, state.time) + tether_energy(model, state.position);
   e.dissipated = state.energy.dissipated;
   e.work_in = state.energy.work_in;
   return e;

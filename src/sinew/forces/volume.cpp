@@ -58,8 +58,31 @@ void compute_tet_geometry(const Model& model, std::span<const Vec3> x, Workspace
                [&](Index t) { compute_geometry_of(model, x, uz(t), workspace); });
 }
 
+// As compute_tet_geometry() to the bit, without the gradients.
+void compute_tet_volumes(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+  parallel_for(model.tet_count(), [&](Index t) {
+    const Tet& tet = model.tets[uz(t)];
+    const Vec3& x0 = x[uz(tet[0])];
+    const Vec3 g3 = (x[uz(tet[1])] - x0).cross(x[uz(tet[2])] - x0) / 6.0;
+    workspace.tet_volume[uz(t)] = (x[uz(tet[3])] - x0).dot(g3);
+  });
+}
+
+// Cells' and tets' pressures from workspace.tet_volume.
+void compute_pressures_of_volumes(const Model& model, Workspace& workspace) {
+  compute_cell_pressures(model, workspace);
+  parallel_for(model.tet_count(), [&](Index i) {
+    const auto t = uz(i);
+    const double ratio = workspace.tet_volume[t] / model.rest_volume[t];
+    workspace.tet_pressure[t] = -model.tet_shear[t] + model.tet_bulk[t] * (ratio - 1.0) +
+                                mean_of_cells(model, t, workspace.cell_pressure) +
+                                guard_pressure(ratio, guard_modulus(model, t));
+  });
+}
+
 // workspace.tet_rate: what u changes every tet's volume by, to first order.
 void compute_tet_rates(const Model& model, std::span<const Vec3> u, Workspace& workspace) {
+  workspace.tet_rate.resize(model.tets.size());
   parallel_for(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
     double rate = 0.0;
@@ -180,14 +203,12 @@ void compute_tet_geometry(const Model& model, std::span<const Vec3> x, std::span
 void compute_volume_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
   workspace.has_tets = true;
   compute_tet_geometry(model, x, workspace);
-  compute_cell_pressures(model, workspace);
-  parallel_for(model.tet_count(), [&](Index i) {
-    const auto t = uz(i);
-    const double ratio = workspace.tet_volume[t] / model.rest_volume[t];
-    workspace.tet_pressure[t] = -model.tet_shear[t] + model.tet_bulk[t] * (ratio - 1.0) +
-                                mean_of_cells(model, t, workspace.cell_pressure) +
-                                guard_pressure(ratio, guard_modulus(model, t));
-  });
+  compute_pressures_of_volumes(model, workspace);
+}
+
+void compute_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+  compute_tet_volumes(model, x, workspace);
+  compute_pressures_of_volumes(model, workspace);
 }
 
 std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x,
@@ -207,7 +228,7 @@ std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x
 
 double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
   if (!model.has_volume) return 0.0;
-  compute_tet_geometry(model, x, workspace);
+  compute_tet_volumes(model, x, workspace);
   compute_cell_pressures(model, workspace);
   const double of_tets = parallel_sum(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
@@ -291,6 +312,7 @@ void rate_cells(const Model& model, std::span<const Vec3> u, Workspace& workspac
 }
 
 void press_cells(const Model& model, std::span<const double> weight, Workspace& workspace) {
+  workspace.tet_pressure_change.resize(model.tets.size());
   parallel_for(model.tet_count(), [&](Index t) {
     workspace.tet_pressure_change[uz(t)] = mean_of_cells(model, uz(t), weight);
   });

@@ -44,6 +44,9 @@ inline Vec3 press_tets(const Model& model, const Workspace& workspace, std::span
 // forces are made of (push_of_tets), and that the products below expect.
 void compute_volume_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace);
 
+// Only tet_volume and tet_pressure: what energies and measures need.
+void compute_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace);
+
 // Only tet_volume and tet_gradient, and of these tets alone.
 void compute_tet_geometry(const Model& model, std::span<const Vec3> x, std::span<const Index> tets,
                           Workspace& workspace);
@@ -57,7 +60,7 @@ inline Vec3 push_of_tets(const Model& model, const Workspace& workspace, Index n
 //   p = -(mu |F|^2 / 3 + s v/V),   F the tet's deformation gradient,
 // which at small strains is -K (v/V - 1) with the bulk modulus K. Of classic springs only what
 // their volume energy does; empty where the model has no volume terms. Expects what
-// compute_volume_pressures leaves at x.
+// compute_pressures leaves at x.
 std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x,
                                      const Workspace& workspace);
 

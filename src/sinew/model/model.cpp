@@ -98,6 +98,12 @@ std::uint64_t Model::hash() const {
     h.value(o.stiffness);
     hash_path(h, o.path);
   }
+  for (const Tether& t : tethers) {
+    h.array(t.nodes);
+    h.array(t.stiffness);
+    h.array(t.offset);
+    hash_vec(h, t.target);
+  }
   return h.digest();
 }
 

@@ -63,6 +63,15 @@ struct Obstacle {
   Path path = {};              // moves the centre
 };
 
+// Springs of rest length zero from nodes to points that are moved from outside during a run
+// (forces/tethers.h). No scene has them: the hands of the live view are made of them.
+struct Tether {
+  std::vector<Index> nodes;
+  std::vector<double> stiffness;  // [N/m] (nodes)
+  std::vector<Vec3> offset;       // of each node's target from `target` [m] (nodes)
+  Vec3 target = Vec3::Zero();     // [m]
+};
+
 // A named selection whose mean is reported each frame.
 struct Probe {
   std::string name;
@@ -144,6 +153,8 @@ struct Model {
   std::vector<Load> loads;
   std::vector<Probe> probes;
   std::vector<Obstacle> obstacles;
+  std::vector<Tether> tethers;        // the one thing that may change during a run, beside gravity:
+                                      // between steps, by who owns the Model
   std::vector<double> surface_share;  // a third of the rest area of its surface triangles [m2]
                                       // (nodes of bodies); empty where there are no obstacles
 

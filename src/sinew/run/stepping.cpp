@@ -15,8 +15,8 @@ namespace sinew {
 namespace {
 
 // Steps between two looks at the stable step; a look costs about as much as two steps in double
-// precision, or five in single. As long as the body is calm they grow, from the first to the last;
-// a body that stiffens or is moved calls for the first again.
+// precision, or as five in single. As long as the body is calm they grow, from the first to the
+// last; a body that stiffens or is moved calls for the first again.
 constexpr std::int64_t first_watch = 6;
 constexpr std::int64_t last_watch = 48;
 constexpr double calm = 0.97;  // of the stable step is left since the last look, or more
@@ -123,19 +123,22 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
     implicit_options_.scheme = scene.scheme == "sdirk2" ? Scheme::sdirk2 : Scheme::backward_euler;
     implicit_options_.tolerance = tolerance_;
   }
+  if (scene.precision == "single" && run.stepper != "implicit") {
+    workspace_.packed = std::make_shared<PackedForces>(model);
+  }
   StableStep stable;
   if (!goes_on && run.stepper != "implicit") {
     stable = find_stable_step(model, run.state.position, workspace_);
   }
   if (run.stepper.empty()) choose(scene, stable, implicit_step, run);
   if (run.stepper == "implicit") {
+    workspace_.packed.reset();
     if (budget_) implicit_->prepare(implicit_step, implicit_options_);
     if (goes_on) return;
     run.target_step = implicit_step;
     run.stable_step = run.smallest_stable_step = no_limit;
     return;
   }
-  if (scene.precision == "single") workspace_.packed = std::make_shared<PackedForces>(model);
   if (goes_on) return;
   run.stable_step = stable.step;
   run.smallest_stable_step = stable.step;

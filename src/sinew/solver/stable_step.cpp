@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/obstacles.h"
+#include "sinew/forces/packed_stiffness.h"
 #include "sinew/forces/stiffness.h"
+#include "sinew/forces/tethers.h"
 #include "sinew/forces/viscosity.h"
+#include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
 
 namespace sinew {
@@ -28,14 +32,35 @@ void scale_nodes(const Model& model, Field& u) {  // u = M^-1/2 u
                [&](Index i) { u[uz(i)] *= std::sqrt(model.inverse_mass[uz(i)]); });
 }
 
-// y = M^-1/2 (a K + b C) M^-1/2 u
-void apply(const Model& model, const Field& x, double a, double b, const Field& u, Field& scratch,
-           Workspace& workspace, Field& y) {
-  scratch = u;
-  scale_nodes(model, scratch);
-  stiffness_damping_times(model, x, a, b, scratch, Tangent::only_stiffening, workspace, y);
-  scale_nodes(model, y);
-}
+// y = M^-1/2 (a K + b C) M^-1/2 u at positions x: by the packed forces where they can.
+class ScaledTangent {
+ public:
+  ScaledTangent(const Model& model, const Field& x, Workspace& workspace)
+      : model_(model),
+        x_(x),
+        workspace_(workspace),
+        scratch_(x.size()),
+        packed_(PackedStiffness::at(model, x, workspace)) {
+    if (!packed_) prepare_stiffness(model, x, workspace);
+  }
+  void times(double a, double b, const Field& u, Field& y) {
+    scratch_ = u;
+    scale_nodes(model_, scratch_);
+    if (packed_) {
+      packed_->times(a, b, scratch_, y);
+    } else {
+      stiffness_damping_times(model_, x_, a, b, scratch_, Tangent::only_stiffening, workspace_, y);
+    }
+    scale_nodes(model_, y);
+  }
+
+ private:
+  const Model& model_;
+  const Field& x_;
+  Workspace& workspace_;
+  Field scratch_;
+  std::optional<PackedStiffness> packed_;
+};
 
 // Numbers in [-1, 1] that look random and are the same everywhere: a start that no symmetry of the
 // mesh makes orthogonal to the mode looked for.
@@ -159,7 +184,8 @@ std::vector<double> row_sums(const Model& model, const Field& x, const Workspace
 // A step that is stable whatever the mesh: per node, the rows of K and C summed (Gershgorin).
 double guaranteed_step(const Model& model, const Field& x, const Workspace& workspace,
                        Index& stiffest) {
-  const std::vector<double> rows = row_sums(model, x, workspace);
+  std::vector<double> rows = row_sums(model, x, workspace);
+  for_each_tethered(model, [&](Index node, double k, const Vec3&) { rows[uz(node)] += k; });
   const std::vector<double> viscous_rows = viscous_row_sums(model, x);
   double h = std::numeric_limits<double>::infinity();
   double highest = 0.0;
@@ -189,26 +215,25 @@ double guaranteed_step(const Model& model, const Field& x, const Workspace& work
 
 StableStep find_stable_step(const Model& model, const Field& x, Workspace& workspace) {
   StableStep result;
-  prepare_stiffness(model, x, workspace);
+  if (model.has_volume) compute_pressures(model, x, workspace);
   double h = guaranteed_step(model, x, workspace, result.stiffest);
   result.step = h;
   if (!std::isfinite(h)) return result;
 
   Field u = scattered(model);
-  Field scratch(u.size()), y(u.size());
+  Field y(u.size());
+  ScaledTangent tangent(model, x, workspace);
   // The largest eigenvalue is a convex function of h, so after its first step Newton's method
   // comes from above and two or three steps do; without damping the first one is exact.
   for (int newton = 0; newton < 8; ++newton) {
-    const Top top =
-        lanczos([&](const Field& in,
-                    Field& out) { apply(model, x, h * h, 2.0 * h, in, scratch, workspace, out); },
-                u, 60);
+    const Top top = lanczos(
+        [&](const Field& in, Field& out) { tangent.times(h * h, 2.0 * h, in, out); }, u, 60);
     result.iterations += top.steps;
     if (top.value <= 0.0) return result;
     u = top.vector;
-    apply(model, x, 1.0, 0.0, u, scratch, workspace, y);
+    tangent.times(1.0, 0.0, u, y);
     const double k = dot(u, y);
-    apply(model, x, 0.0, 1.0, u, scratch, workspace, y);
+    tangent.times(0.0, 1.0, u, y);
     const double c = dot(u, y);
     result.omega_max = std::sqrt(std::max(0.0, k));
     result.zeta = k > 0.0 ? 0.5 * c / result.omega_max : 0.0;
@@ -225,12 +250,9 @@ StableStep find_stable_step(const Model& model, const Field& x, Workspace& works
 
 double watch_stable_step(const Model& model, const Field& x, double h, Field& mode,
                          Workspace& workspace) {
-  Field scratch(mode.size());
-  prepare_stiffness(model, x, workspace);
-  Top top =
-      lanczos([&](const Field& in,
-                  Field& out) { apply(model, x, h * h, 2.0 * h, in, scratch, workspace, out); },
-              mode, 3);
+  ScaledTangent tangent(model, x, workspace);
+  Top top = lanczos([&](const Field& in, Field& out) { tangent.times(h * h, 2.0 * h, in, out); },
+                    mode, 3);
   if (!(top.value > 0.0)) return h;
   mode = std::move(top.vector);
   // With h scaled by s, h^2 K + 2 h C grows at most by s^2 for s > 1 and shrinks at least by s for

@@ -25,9 +25,9 @@ struct StableStep {
 //
 StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace);
 
-// The same during a run, at the price of about two steps in double precision: three products of
-// Lanczos that start from `mode`, the mode found before, with the step `h` now taken; `mode`
-// becomes the better one. Returns a stable step, which with damping may be shorter than the
+// The same during a run, at the price of two steps in double precision or five in single: three
+// products of Lanczos that start from `mode`, the mode found before, with the step `h` now taken;
+// `mode` becomes the better one. Returns a stable step, which with damping may be shorter than the
 // largest. What three products cannot see is not in it: leave a margin.
 double watch_stable_step(const Model& model, const std::vector<Vec3>& x, double h,
                          std::vector<Vec3>& mode, Workspace& workspace);

@@ -6,6 +6,7 @@
 #include "sinew/base/sort_by_key.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
+#include "sinew/forces/tethers.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
@@ -367,10 +368,13 @@ void TangentMatrix::assemble_cells(const Objective& objective, const Workspace& 
 void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
                                    const Workspace& workspace) {
   const Model& model = objective.model;
+  std::vector<double> tether(model.tethers.empty() ? 0 : free_.size(), 0.0);
+  for_each_tethered(model, [&](Index node, double k, const Vec3&) { tether[uz(node)] += k; });
   parallel_for(model.node_count(), [&](Index i) {
     const auto n = uz(i);
     if (free_[n] == 0) return;
-    const double weight = (objective.inertia + objective.rate * model.drag[n]) * model.mass[n];
+    const double weight = (tether.empty() ? 0.0 : tether[n]) +
+                          (objective.inertia + objective.rate * model.drag[n]) * model.mass[n];
     Mat3 own = weight * Mat3::Identity();
     add_obstacle_stiffness(model, x[n], workspace.obstacle_center, i, own);
     if (objective.constraints != nullptr && n < objective.constraints->node_blocks().size()) {

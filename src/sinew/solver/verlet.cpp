@@ -10,6 +10,7 @@
 #include "sinew/contact/ground.h"
 #include "sinew/forces/limits.h"
 #include "sinew/forces/loads.h"
+#include "sinew/forces/node_kernels.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/righting.h"
 #include "sinew/forces/springs.h"
@@ -27,20 +28,18 @@ constexpr double farthest = 1e9;
 // Moves the free nodes. Returns the first node that is not finite or has run away, or `none`.
 Index move_free_nodes(const Model& model, const Workspace& workspace, double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
-  return parallel_reduce(
-      model.node_count(), none,
+  const int within = parallel_reduce(
+      model.node_count(), 1,
       [&](Range r) {
-        Index broken = none;
-        for (Index i = r.begin; i < r.end; ++i) {
-          const auto k = uz(i);
-          if (model.inverse_mass[k] == 0.0) continue;
-          state.half_velocity[k] += (kick * model.inverse_mass[k]) * workspace.force[k];
-          state.position[k] += h * state.half_velocity[k];
-          if (!(state.position[k].cwiseAbs().maxCoeff() <= farthest)) broken = std::min(broken, i);
-        }
-        return broken;
+        return kick_and_drift(model, workspace.force, kick, h, farthest, r, state) ? 1 : 0;
       },
-      [](Index a, Index b) { return std::min(a, b); });
+      [](int a, int b) { return a & b; });
+  if (within != 0) return none;
+  for (Index i = 0; i < model.node_count(); ++i) {
+    const bool near = (state.position[uz(i)].array().abs() <= farthest).all();
+    if (model.inverse_mass[uz(i)] > 0.0 && !near) return i;
+  }
+  return none;
 }
 
 // Moves the pinned nodes along their paths; adds the work their motion does on the springs.

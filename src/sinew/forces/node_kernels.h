@@ -1,0 +1,39 @@
+// The loops over nodes of a step of Verlet, the three coordinates of a node at a time, for every
+// instruction set that the processor may have; all give the same bits.
+#pragma once
+
+#include <span>
+
+#include "sinew/base/vec.h"
+#include "sinew/model/model.h"
+#include "sinew/model/state.h"
+
+namespace sinew {
+
+// The way a body has gone as a whole, which its displacements leave out: x = c + R (X - C + u).
+struct Frame {
+  Mat3 rotation = Mat3::Identity();  // R
+  Vec3 centre = Vec3::Zero();        // c [m]
+  Vec3 rest_centre = Vec3::Zero();   // C [m]
+  Vec3 velocity = Vec3::Zero();      // of the centre [m/s]
+};
+// u and, where asked for, R^T (v - the centre's velocity) of the nodes, four floats each, the
+// fourth zero; those of a node of -1 are left as they are.
+void frame_displacements(const Frame& frame, std::span<const Index> nodes, const Model& model,
+                         const State& state, float* u, float* v);
+
+// force = what is given, plus m (g - drag w) on the free nodes [N]; returns the power of the drag
+// [W]. Given are the forces themselves, of a range of nodes, ...
+double add_gravity_and_drag(const Model& model, const std::vector<Vec3>& w, Range nodes,
+                            std::vector<Vec3>& force);
+// ... or four floats a node, of which -1 is none.
+double add_gravity_and_drag(const Model& model, const std::vector<Vec3>& w,
+                            std::span<const Index> nodes, const float* given,
+                            std::vector<Vec3>& force);
+
+// The free nodes among them: w += kick / m f, x += h w. Returns whether all of them are finite and
+// nearer than `farthest` [m] in every coordinate.
+bool kick_and_drift(const Model& model, const std::vector<Vec3>& force, double kick, double h,
+                    double farthest, Range nodes, State& state);
+
+}  // namespace sinew
