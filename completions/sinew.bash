@@ -20,7 +20,7 @@ _sinew() {
   local meshes=(mesh msh vtk vtu node ele)
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    _sinew_words "run resume info convert identify converge validate materials bench completion --help --version"
+    _sinew_words "run resume view info convert identify converge validate materials bench completion --help --version"
     return
   fi
   case ${COMP_WORDS[1]}:$previous in
@@ -51,10 +51,12 @@ _sinew() {
       _sinew_files '*'
       return
       ;;
-    *:--meshes | *:--filter | *:--seconds | *:--threads | *:--set | *:--scale | *:--levels) return ;;
+    *:--meshes | *:--filter | *:--seconds | *:--threads | *:--set | *:--scale | *:--levels | *:--port | *:--host) return ;;
   esac
   case ${COMP_WORDS[1]}:$cur in
     run:-*) _sinew_words "-o --out --set --force --no-output --json -q --quiet --threads --help" ;;
+    view:-*) _sinew_words "--port --open --host --set -q --quiet --threads --help" ;;
+    view:*) _sinew_files toml ;;
     resume:-*) _sinew_words "--json -q --quiet --threads --help" ;;
     info:-*) _sinew_words "--scale --json --help" ;;
     convert:-*) _sinew_words "--scale --repair --format --force --help" ;;

@@ -11,6 +11,7 @@ _sinew() {
       local -a commands=(
         'run:Run a scene into a folder'
         'resume:Go on with a run from its last checkpoint'
+        'view:Show a scene live in the browser'
         'info:Examine a mesh'
         'convert:Convert between mesh formats'
         'identify:Measure what each law makes of a material on a mesh'
@@ -41,6 +42,16 @@ _sinew() {
             '--threads[Threads to use]:count:' \
             '--help[Show help]' \
             '1:folder:_files -/'
+          ;;
+        view)
+          _arguments '--port[Port to serve the page at]:port:' \
+            '--host[Address to serve at]:address:' \
+            '--open[Open the page in the browser]' \
+            '*--set[Override a value]:KEY=VALUE:' \
+            '(-q --quiet)'{-q,--quiet}'[Print the address and errors only]' \
+            '--threads[Threads to use]:count:' \
+            '--help[Show help]' \
+            '1:scene:_files -g "*.toml(-.)"'
           ;;
         info)
           _arguments '--scale[Factor from the unit of the file to metres]:factor:' \

@@ -16,6 +16,7 @@ Examples:
   sinew run scenes/liver.toml
   sinew run scenes/beam.toml --set beam.cells=[8,8,32] --set beam.young=1.5e6
   sinew resume out/liver
+  sinew view scenes/liver.toml --open
   sinew info scenes/meshes/liver-10mm.mesh
   sinew convert liver.mesh liver.vtu
   sinew materials liver)";
@@ -31,6 +32,7 @@ int main(int argc, char** argv) {
   int status = 0;
   add_run(app, status);
   add_resume(app, status);
+  add_view(app, status);
   add_info(app);
   add_convert(app);
   add_materials(app);

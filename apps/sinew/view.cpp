@@ -1,0 +1,142 @@
+// sinew view: the live view in the browser.
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "commands.h"
+#include "sinew/base/error.h"
+#include "sinew/base/parallel.h"
+#include "sinew/server/server.h"
+
+using namespace sinew;
+
+namespace {
+
+constexpr const char* kFooter = R"(
+The page needs no internet: it is part of this program. Whoever opens the address first has the
+controls, others watch. Ctrl-C ends it.
+
+Examples:
+  sinew view scenes/liver.toml
+  sinew view scenes/liver.toml --set liver.young=20e3 --open
+  sinew view scenes/beam.toml --host 0.0.0.0     for other machines, with the printed token)";
+
+struct Arguments {
+  std::string scene;
+  std::vector<std::string> set;
+  std::string host = "127.0.0.1";
+  int port = 8650;
+  bool open = false, quiet = false;
+  int threads = 0;
+};
+
+sigset_t end_signals() {
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  return signals;
+}
+
+// Waits for Ctrl-C or SIGTERM on a thread of its own, and stops the server. Signals have to be
+// blocked before any other thread starts. A second Ctrl-C kills.
+class StopOnSignal {
+ public:
+  explicit StopOnSignal(server::Server& server)
+      : thread_([this, &server](const std::stop_token& token) {
+          const sigset_t signals = end_signals();
+          const timespec a_moment{0, 100'000'000};
+          while (!token.stop_requested()) {
+            if (sigtimedwait(&signals, nullptr, &a_moment) < 0) continue;
+            stopped_ = true;
+            server.stop();
+            std::signal(SIGINT, SIG_DFL);
+            std::signal(SIGTERM, SIG_DFL);
+            pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
+            return;
+          }
+        }) {}
+  bool stopped() const { return stopped_; }
+
+ private:
+  std::atomic<bool> stopped_{false};
+  std::jthread thread_;
+};
+
+// Asks the desktop to show the page; where there is none, the printed address has to do.
+void open_browser(std::string url) {
+#ifdef __APPLE__
+  std::string program = "open";
+#else
+  std::string program = "xdg-open";
+#endif
+  posix_spawn_file_actions_t quiet;
+  posix_spawn_file_actions_init(&quiet);
+  posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  char* const command[] = {program.data(), url.data(), nullptr};
+  pid_t child = 0;
+  std::signal(SIGCHLD, SIG_IGN);  // nobody waits for it
+  if (posix_spawnp(&child, program.c_str(), &quiet, &attributes, command, environ) != 0) {
+    fmt::print(stderr, "sinew: no {} here: open the address by hand\n", program);
+  }
+  posix_spawnattr_destroy(&attributes);
+  posix_spawn_file_actions_destroy(&quiet);
+}
+
+int view(const Arguments& a) {
+  const sigset_t signals = end_signals();
+  pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  const ThreadLimit limit(a.threads);
+  server::Options options;
+  options.host = a.host;
+  options.port = static_cast<unsigned short>(a.port);
+  if (!server::is_loopback(a.host)) options.token = server::make_token();
+  server::Server server(options, load_scene(a.scene, a.set));
+  const StopOnSignal stop(server);
+  fmt::print("{}\n", server.url());
+  if (!a.quiet) fmt::print("Open it in a browser. Ctrl-C ends.\n");
+  std::fflush(stdout);
+  if (a.open) open_browser(server.url());
+  server.run();
+  return 0;
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, int& status) {
+  auto a = std::make_shared<Arguments>();
+  CLI::App* command =
+      app.add_subcommand("view", "Show a scene live in the browser: watch it, pull it, change it");
+  command->add_option("SCENE", a->scene, "Scene file (TOML)")->required();
+  command->add_option("--port", a->port, "Port to serve the page at; 0 for any that is free")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  command->add_flag("--open", a->open, "Open the page in the desktop's browser");
+  command
+      ->add_option("--host", a->host,
+                   "Address to serve at; other than this machine's own needs the printed token")
+      ->capture_default_str();
+  command->add_option("--set", a->set, "Override a value: --set beam.young=1.5e6")
+      ->allow_extra_args(false)
+      ->type_name("KEY=VALUE");
+  command->add_flag("-q,--quiet", a->quiet, "Print the address and errors only");
+  command->add_option("--threads", a->threads, "Threads to use; the result does not depend on it")
+      ->check(CLI::Range(0, 1024))
+      ->default_str("all");
+  command->footer(kFooter);
+  command->callback([a, &status] { status = view(*a); });
+}

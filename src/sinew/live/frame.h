@@ -1,0 +1,79 @@
+// What a live simulation shows of itself: frames to draw, and a status in numbers.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sinew/forces/terms.h"
+#include "sinew/live/command.h"
+#include "sinew/live/quantity.h"
+
+namespace sinew::live {
+
+struct Frame {
+  std::uint32_t revision = 0;  // of the Topology that it belongs to
+  std::uint64_t number = 0;    // counts up with every frame published
+  double time = 0.0;           // simulated [s]
+  Quantity quantity = Quantity::displacement;
+  std::vector<float> position;  // [m] (3 a surface node)
+  std::vector<float> value;     // of the quantity (surface nodes)
+};
+
+// A hand that holds something.
+struct HandStatus {
+  int hand = 0;
+  Vec3 at = Vec3::Zero();      // where what it holds is now [m]
+  Vec3 target = Vec3::Zero();  // where it is itself [m]
+  Vec3 force = Vec3::Zero();   // on the tissue [N]
+};
+
+struct Status {
+  std::uint32_t revision = 0;
+  std::uint32_t changes = 0;  // of values, see Parameters
+  bool running = false;
+  double time = 0.0;         // simulated [s]
+  std::int64_t step = 0;     // steps taken
+  double dt = 0.0;           // the step now taken [s]
+  double stable_step = 0.0;  // the largest explicit one when last looked at [s]; infinity: any
+  std::string stepper;       // verlet, implicit
+  std::string reason;        // of stepper = "auto": why
+  double time_scale = 1.0;
+  double rate = 0.0;      // simulated seconds per second, over the last half second [-]; paused 0
+  double capacity = 0.0;  // what it could be without waiting for the clock [-]
+  double ms_per_step = 0.0;      // of wall time
+  double steps_per_frame = 0.0;  // of 1/60 s simulated
+  double newton_per_step = 0.0;  // implicit steps
+  double products_per_newton = 0.0;
+  std::string limit;  // what keeps it from real time, in words; empty: nothing does
+  Energies energy;
+  double volume_ratio = 1.0;                     // of all bodies [-]
+  double max_stretch = 0.0, max_compress = 0.0;  // [-]
+  std::int64_t contacts = 0;                     // nodes on the ground
+  std::int64_t inverted_tets = 0;
+  std::vector<HandStatus> hands;
+  std::string error;         // why it stopped, or what was refused last; empty: all well
+  std::uint32_t errors = 0;  // counts errors, so that the same one twice can be told
+};
+
+// The values that may be changed while it runs, as they are.
+struct Parameters {
+  struct Part {
+    std::string body;
+    std::string region;  // empty: tets that no region covers, or the whole body
+    Material material;
+  };
+  std::vector<Part> parts;
+  Vec3 gravity = Vec3::Zero();  // [m/s2]
+  std::string stepper;          // as asked
+  double dt = 0.0;              // [s]; 0: auto
+  bool has_ground = false;
+  Vec3 ground_point = Vec3::Zero();
+  Vec3 ground_normal = Vec3::UnitY();
+  std::string scene, title, look_for;
+  std::int64_t nodes = 0, tets = 0, springs = 0;
+  double mass = 0.0;     // [kg]
+  std::string document;  // the scene as TOML with the values as they are
+};
+
+}  // namespace sinew::live

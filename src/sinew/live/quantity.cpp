@@ -1,0 +1,89 @@
+#include "sinew/live/quantity.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/base/parallel.h"
+#include "sinew/mesh/tet_mesh.h"
+#include "sinew/run/recorder.h"
+
+namespace sinew::live {
+namespace {
+
+// D = (x1 - x0, x2 - x0, x3 - x0).
+Mat3 edges_of(const std::vector<Vec3>& x, const Tet& t) {
+  Mat3 D;
+  for (int c = 0; c < 3; ++c) D.col(c) = x[uz(t[static_cast<std::size_t>(c) + 1])] - x[uz(t[0])];
+  return D;
+}
+
+double stress_of(const Model& model, const State& state, Index tet) {
+  const Tet& t = model.tets[uz(tet)];
+  const Mat3 F = edges_of(state.position, t) * edges_of(model.rest_position, t).inverse();
+  return von_mises(model.tet_modulus[uz(tet)], F);
+}
+
+double volume_change_of(const Model& model, const State& state, Index tet) {
+  return signed_volume(state.position, model.tets[uz(tet)]) / model.rest_volume[uz(tet)] - 1.0;
+}
+
+}  // namespace
+
+std::optional<Quantity> quantity_named(std::string_view name) {
+  for (std::size_t q = 0; q < quantities.size(); ++q) {
+    if (quantities[q].name == name) return static_cast<Quantity>(q);
+  }
+  return std::nullopt;
+}
+
+double von_mises(double shear_modulus, const Mat3& F) {
+  const double J = F.determinant();
+  if (!(J > 0.0)) return 0.0;
+  const Mat3 B = F * F.transpose();
+  const Mat3 deviator = B - B.trace() / 3.0 * Mat3::Identity();
+  return std::sqrt(1.5) * shear_modulus / J * deviator.norm();
+}
+
+std::vector<float> measure(Quantity quantity, const Model& model, const State& state,
+                           const Topology& topology) {
+  const auto count = static_cast<Index>(topology.node.size());
+  std::vector<float> values(topology.node.size());
+  const auto fill = [&](const auto& value) {
+    parallel_for(count, [&](Index i) { values[uz(i)] = static_cast<float>(value(i)); });
+  };
+  const auto node = [&](Index i) { return uz(topology.node[uz(i)]); };
+  // Mean over the tets at the surface node.
+  const auto mean = [&](Index i, const auto& of_tet) {
+    const Index begin = topology.tet_start[uz(i)];
+    const Index end = topology.tet_start[uz(i) + 1];
+    double sum = 0.0;
+    for (Index k = begin; k < end; ++k) sum += of_tet(model, state, topology.tet[uz(k)]);
+    return sum / static_cast<double>(std::max(1, end - begin));
+  };
+  switch (quantity) {
+    case Quantity::displacement:
+      fill(
+          [&](Index i) { return (state.position[node(i)] - model.rest_position[node(i)]).norm(); });
+      break;
+    case Quantity::stretch: {
+      const std::vector<double> stretch = node_stretch(model, state.position);
+      fill([&](Index i) { return stretch[node(i)]; });
+      break;
+    }
+    case Quantity::volume:
+      fill([&](Index i) { return mean(i, volume_change_of); });
+      break;
+    case Quantity::stress:
+      fill([&](Index i) { return mean(i, stress_of); });
+      break;
+    case Quantity::speed:
+      fill([&](Index i) { return state.half_velocity[node(i)].norm(); });
+      break;
+    case Quantity::region:
+      fill([&](Index i) { return topology.region[uz(i)]; });
+      break;
+  }
+  return values;
+}
+
+}  // namespace sinew::live

@@ -1,0 +1,189 @@
+#include "sinew/live/runner.h"
+
+#include <exception>
+#include <utility>
+
+#include "sinew/base/error.h"
+
+namespace sinew::live {
+namespace {
+
+using std::chrono::duration;
+using std::chrono::milliseconds;
+
+// A frame that takes longer is shown half done.
+constexpr milliseconds longest_slice(25);
+// Behind the clock by more than this, time lost is not made up for.
+constexpr milliseconds most_lag(100);
+constexpr milliseconds between_status(100);
+constexpr double rate_window = 0.5;  // [s]
+
+// Whether `later` makes `earlier`, which waits right before it, needless.
+bool replaces(const Command& later, const Command& earlier) {
+  if (later.index() != earlier.index()) return false;
+  if (const auto* drag = std::get_if<Drag>(&later)) {
+    return drag->hand == std::get<Drag>(earlier).hand;
+  }
+  if (const auto* set = std::get_if<SetMaterial>(&later)) {
+    const auto& other = std::get<SetMaterial>(earlier);
+    return set->body == other.body && set->region == other.region && set->key == other.key;
+  }
+  return std::holds_alternative<SetGravity>(later) || std::holds_alternative<SetQuantity>(later) ||
+         std::holds_alternative<SetTimeScale>(later);
+}
+
+bool is_of_hand(const Command& command) {
+  return std::holds_alternative<Grab>(command) || std::holds_alternative<Drag>(command) ||
+         std::holds_alternative<Release>(command);
+}
+
+Clock::duration seconds(double s) {
+  return std::chrono::duration_cast<Clock::duration>(duration<double>(s));
+}
+
+// When a simulated time is due by the clock; how fast it really goes.
+class Pace {
+ public:
+  void start(double time, double scale) {
+    anchor_ = window_ = Clock::now();
+    anchor_time_ = window_time_ = time;
+    scale_ = scale;
+    running_ = true;
+  }
+  void stop() { running_ = false; }
+  bool fits(double scale) const { return running_ && scale == scale_; }
+  Clock::time_point due(double time) const {
+    return anchor_ + seconds((time - anchor_time_) / scale_);
+  }
+
+  // Called after every slice; keeps `rate` as it was until the window is over.
+  void note(double time, double& rate) {
+    const Clock::time_point now = Clock::now();
+    if (now - due(time) > most_lag) {
+      anchor_ = now;
+      anchor_time_ = time;
+    }
+    const double wall = duration<double>(now - window_).count();
+    if (wall < rate_window) return;
+    rate = (time - window_time_) / wall;
+    window_ = now;
+    window_time_ = time;
+  }
+
+ private:
+  Clock::time_point anchor_{}, window_{};
+  double anchor_time_ = 0.0, window_time_ = 0.0, scale_ = 1.0;
+  bool running_ = false;
+};
+
+}  // namespace
+
+Runner::Runner(const Scene& scene, std::function<void()> published)
+    : simulation_(scene), published_(std::move(published)) {
+  publish();
+  thread_ = std::thread([this] { work(); });
+}
+
+Runner::~Runner() {
+  {
+    const std::lock_guard lock(mutex_);
+    quit_ = true;
+  }
+  wake_.notify_one();
+  thread_.join();
+}
+
+bool Runner::post(Command command) {
+  const bool of_hand = is_of_hand(command);
+  {
+    const std::lock_guard lock(mutex_);
+    if (!commands_.empty() && replaces(command, commands_.back())) {
+      commands_.back() = std::move(command);
+    } else if (commands_.size() < most_commands) {
+      commands_.push_back(std::move(command));
+    } else {
+      return false;
+    }
+    if (of_hand) hurry_ = true;
+  }
+  wake_.notify_one();
+  return true;
+}
+
+Snapshot Runner::snapshot() const {
+  const std::lock_guard lock(mutex_);
+  return snapshot_;
+}
+
+void Runner::obey(std::deque<Command>& commands) {
+  for (const Command& command : commands) {
+    try {
+      simulation_.apply(command);
+    } catch (const Error& e) {
+      simulation_.report(e);
+    } catch (const std::exception& e) {  // such as memory that a finer mesh would need
+      simulation_.report(Error(ErrorKind::internal, e.what(), "a smaller scene"));
+    }
+  }
+  status_at_ = {};
+}
+
+void Runner::work() {
+  Pace pace;
+  while (true) {
+    std::deque<Command> commands;
+    {
+      std::unique_lock lock(mutex_);
+      const auto called = [&] { return quit_ || !commands_.empty(); };
+      if (!simulation_.running()) {
+        wake_.wait(lock, called);
+      } else if (pace.fits(simulation_.time_scale())) {
+        wake_.wait_until(lock, pace.due(simulation_.time()), called);
+      }
+      if (quit_) return;
+      commands.swap(commands_);
+      hurry_ = false;
+    }
+    const double before = simulation_.time();
+    if (!commands.empty()) obey(commands);
+    if (!simulation_.running()) {
+      pace.stop();
+      rate_ = 0.0;
+    } else {
+      if (!pace.fits(simulation_.time_scale()) || simulation_.time() < before) {
+        pace.start(simulation_.time(), simulation_.time_scale());
+      }
+      // Woken by a command before the frame is due: it is shown when that time comes.
+      if (Clock::now() < pace.due(simulation_.time())) continue;
+      simulation_.advance(Clock::now() + longest_slice, &hurry_);
+      pace.note(simulation_.time(), rate_);
+      // Hands that never rest do not keep frames from being shown.
+      if (hurry_ && Clock::now() - published_at_ < longest_slice) continue;
+      if (!simulation_.running()) status_at_ = {};
+    }
+    publish();
+  }
+}
+
+void Runner::publish() {
+  published_at_ = Clock::now();
+  Snapshot next;
+  next.topology = simulation_.topology();
+  next.parameters = simulation_.parameters();
+  next.frame = std::make_shared<Frame>(simulation_.frame());
+  const Clock::time_point now = Clock::now();
+  if (now - status_at_ >= between_status) {
+    Status status = simulation_.status();
+    status.rate = rate_;
+    next.status = std::make_shared<Status>(std::move(status));
+    status_at_ = now;
+  }
+  {
+    const std::lock_guard lock(mutex_);
+    if (!next.status) next.status = snapshot_.status;
+    snapshot_ = std::move(next);
+  }
+  if (published_) published_();
+}
+
+}  // namespace sinew::live

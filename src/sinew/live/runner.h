@@ -1,0 +1,63 @@
+// A live simulation on a thread of its own, at the pace of the clock: commands go in, the newest
+// frame and status can be had at any time.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "sinew/live/simulation.h"
+
+namespace sinew::live {
+
+// All of one moment. The pointers are never null, what they point to never changes.
+struct Snapshot {
+  std::shared_ptr<const Topology> topology;
+  std::shared_ptr<const Parameters> parameters;
+  std::shared_ptr<const Status> status;
+  std::shared_ptr<const Frame> frame;
+};
+
+class Runner {
+ public:
+  // Builds the scene before it returns; throws what Simulation throws. `published` is called from
+  // the simulation's thread after every new frame or status, and has to be quick.
+  explicit Runner(const Scene& scene, std::function<void()> published = {});
+  ~Runner();  // ends the thread after the step under way
+  Runner(const Runner&) = delete;
+  Runner& operator=(const Runner&) = delete;
+
+  // Queues the command; of moves of one hand, or values of one key, that wait one after the other
+  // only the last is kept. False where too many wait: the command is dropped.
+  bool post(Command command);
+
+  Snapshot snapshot() const;
+
+ private:
+  void work();
+  void obey(std::deque<Command>& commands);
+  void publish();
+
+  static constexpr std::size_t most_commands = 256;
+
+  Simulation simulation_;
+  std::function<void()> published_;
+  double rate_ = 0.0;              // see Status
+  Clock::time_point status_at_{};  // when it was last measured
+  Clock::time_point published_at_{};
+  std::atomic<bool> hurry_{false};  // a hand has moved: the frame under way is to know
+
+  mutable std::mutex mutex_;  // of all that follows
+  std::condition_variable wake_;
+  std::deque<Command> commands_;
+  Snapshot snapshot_;
+  bool quit_ = false;
+
+  std::thread thread_;  // last: it uses all of the others
+};
+
+}  // namespace sinew::live

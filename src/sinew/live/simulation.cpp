@@ -1,0 +1,387 @@
+#include "sinew/live/simulation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <string_view>
+
+#include "sinew/base/error.h"
+#include "sinew/forces/springs.h"
+#include "sinew/live/carry_over.h"
+#include "sinew/run/summary.h"
+#include "sinew/scene/build.h"
+
+namespace sinew::live {
+namespace {
+
+// No run of the live view comes to an end by itself [s].
+constexpr double for_ever = 1e9;
+// How much is measured before the speed is said anew [s] of wall time.
+constexpr double speed_window = 0.5;
+
+constexpr std::array<std::string_view, 13> material_keys = {
+    "law",  "young",         "poisson",        "density", "damping", "damping_ratio", "viscosity",
+    "drag", "stretch_limit", "compress_limit", "volume",  "beta",    "volume_limit"};
+constexpr std::array<std::string_view, 7> stepping_keys = {
+    "stepper", "scheme", "dt", "substeps", "precision", "tolerance", "safety"};
+
+template <std::size_t N>
+void require_key(const std::array<std::string_view, N>& keys, const std::string& key) {
+  if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
+  throw Error(ErrorKind::usage, fmt::format("'{}' cannot be changed while it runs", key),
+              fmt::format("one of {}", fmt::join(keys, ", ")));
+}
+
+// A value goes into the scene's document as TOML: a number or a word, and nothing else.
+void require_plain(const std::string& value) {
+  const bool plain = !value.empty() && value.size() <= 40 &&
+                     value.find_first_not_of(
+                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                         "0123456789+-._") == std::string::npos;
+  if (!plain) throw Error(ErrorKind::usage, "the value is no number and no word", "such as 15e3");
+}
+
+void require_point(const Vec3& point) {
+  if (!point.allFinite() || point.cwiseAbs().maxCoeff() > 1e6) {
+    throw Error(ErrorKind::usage, "the point is not within 1e6 m", "give x, y, z in metres");
+  }
+}
+
+Scene with(const Scene& scene, const std::vector<std::string>& overrides) {
+  return parse_scene(scene.document, scene.file, scene.base, overrides);
+}
+
+double interval_of(const Scene& scene) {
+  const double frame = 1.0 / scene.output.fps;
+  return scene.dt ? std::max(frame, *scene.dt / scene.substeps) : frame;
+}
+
+}  // namespace
+
+Simulation::Simulation(const Scene& scene) {
+  act(Load{scene});
+}
+
+void Simulation::apply(const Command& command) {
+  if (!std::holds_alternative<Drag>(command)) error_.clear();
+  std::visit([&](const auto& c) { act(c); }, command);
+}
+
+void Simulation::report(const Error& error) {
+  error_ = error.message();
+  if (!error.remedy().empty()) error_ += "; remedy: " + error.remedy();
+  ++errors_;
+}
+
+void Simulation::act(const Play& c) {
+  running_ = c.running;
+}
+
+void Simulation::act(const Advance& c) {
+  running_ = false;
+  if (!c.frame) return take_step();
+  while (!advance(Clock::now() + std::chrono::seconds(1)) && error_.empty()) {
+  }
+}
+
+void Simulation::act(const Reset&) {
+  hands_.release_all(*model_, run_.state);
+  rebuild(scene_, nullptr);
+}
+
+void Simulation::act(const Load& c) {
+  if (model_) hands_.release_all(*model_, run_.state);
+  hands_ = {};
+  rebuild(c.scene, nullptr);
+  running_ = false;
+  ++revision_;
+  topology_ = std::make_shared<Topology>(
+      make_topology(*model_, revision_, scene_.title.empty() ? scene_.name : scene_.title));
+  remember_parameters();
+}
+
+void Simulation::act(const SetMaterial& c) {
+  require_key(material_keys, c.key);
+  require_plain(c.value);
+  std::vector<std::string> overrides;
+  bool found = false;
+  for (const SceneBody& body : scene_.bodies) {
+    if (!c.body.empty() && body.name != c.body) continue;
+    found = found || c.region.empty();
+    const std::string at = "body." + body.name + ".";
+    if (c.region.empty()) overrides.push_back(at + c.key + "=" + c.value);
+    for (const SceneRegion& region : body.regions) {
+      if (!c.region.empty() && region.name != c.region) continue;
+      found = true;
+      overrides.push_back(at + "region." + region.name + "." + c.key + "=" + c.value);
+    }
+  }
+  if (!found) {
+    throw Error(ErrorKind::usage, "the scene has no such body or region",
+                "name one that the message 'scene' lists");
+  }
+  change(overrides);
+}
+
+void Simulation::act(const SetStepping& c) {
+  require_key(stepping_keys, c.key);
+  require_plain(c.value);
+  change({c.key + "=" + c.value});
+}
+
+void Simulation::act(const SetGravity& c) {
+  if (!c.gravity.allFinite() || c.gravity.norm() > 1e4) {
+    throw Error(ErrorKind::usage, "gravity is not within 1e4 m/s2", "the earth's is 9.81 m/s2");
+  }
+  // The forces take it from the model in every step: nothing has to be built for it.
+  scene_ = with(scene_,
+                {fmt::format("gravity=[{},{},{}]", c.gravity.x(), c.gravity.y(), c.gravity.z())});
+  stepped_.gravity = c.gravity;
+  model_->gravity = c.gravity;
+  remember_parameters();
+}
+
+void Simulation::act(const SetTimeScale& c) {
+  if (!(c.scale >= 1e-3 && c.scale <= 100.0)) {
+    throw Error(ErrorKind::usage, "the time scale is not from 0.001 to 100", "1 is real time");
+  }
+  time_scale_ = c.scale;
+}
+
+void Simulation::act(const SetQuantity& c) {
+  quantity_ = c.quantity;
+}
+
+namespace {
+void require_hand(int hand) {
+  if (hand >= 0 && hand < most_hands) return;
+  throw Error(ErrorKind::usage, "no such hand", fmt::format("from 0 to {}", most_hands - 1));
+}
+}  // namespace
+
+void Simulation::act(const Grab& c) {
+  require_hand(c.hand);
+  require_point(c.point);
+  if (c.node < 0 || uz(c.node) >= topology_->node.size()) {
+    throw Error(ErrorKind::usage, "no such node of the surface",
+                fmt::format("from 0 to {}", topology_->node.size() - 1));
+  }
+  if (!(c.radius >= 0.0 && c.radius <= 1e6)) {
+    throw Error(ErrorKind::usage, "the radius is not from 0 to 1e6 m", "0 for the usual one");
+  }
+  const double usual = std::max(1.7 * static_cast<double>(topology_->edge),
+                                0.04 * static_cast<double>(topology_->diagonal));
+  hands_.grab(*model_, run_.state, c.hand, topology_->node[uz(c.node)], c.point,
+              c.radius > 0.0 ? c.radius : usual);
+}
+
+void Simulation::act(const Drag& c) {
+  require_hand(c.hand);
+  require_point(c.point);
+  hands_.drag(*model_, run_.state, c.hand, c.point);
+}
+
+void Simulation::act(const Release& c) {
+  require_hand(c.hand);
+  hands_.release(*model_, run_.state, c.hand);
+}
+
+// The scene with other values, going on from where the nodes are.
+void Simulation::change(const std::vector<std::string>& overrides) {
+  const State keep = run_.state;
+  const Scene changed = with(scene_, overrides);
+  try {
+    rebuild(changed, &keep);
+  } catch (const Error& e) {
+    // A given step that the new material is too stiff for is no reason to refuse the material.
+    const bool asked = std::any_of(overrides.begin(), overrides.end(), [](const std::string& o) {
+      return o.starts_with("dt=") || o.starts_with("substeps=");
+    });
+    if (e.kind() != ErrorKind::unstable || asked) throw;
+    rebuild(with(changed, {"dt=auto"}), &keep);
+  }
+}
+
+// Makes everything anew before anything of it is put in place: a scene that cannot be built leaves
+// the one before as it is.
+void Simulation::rebuild(const Scene& scene, const State* keep) {
+  Scene stepped = scene;
+  stepped.duration = for_ever;
+  stepped.output.fps = frames_per_second;
+  stepped.budget_ms.reset();
+  if (stepped.stepper == "static") stepped.stepper = "implicit";
+  auto model = std::make_unique<Model>(build_model(stepped));
+  RunState run;
+  run.state = initial_state(*model);
+  if (keep != nullptr && keep->position.size() == run.state.position.size()) {
+    run.state = *keep;
+    run.state.reactions = {};
+    calm_softened_bodies(*model_, *model, run.state);
+    run.frame = static_cast<std::int64_t>(std::floor(keep->time / interval_of(stepped) + 1e-9));
+  }
+  auto stepping = std::make_unique<Stepping>(stepped, *model, run);
+  scene_ = scene;
+  stepped_ = std::move(stepped);
+  stepping_ = std::move(stepping);  // before the model that it refers to goes
+  model_ = std::move(model);
+  run_ = std::move(run);
+  good_ = run_.state;
+  hands_.hold(*model_, run_.state, run_.stable_step > 0.0 ? run_.stable_step : no_limit);
+  speed_ = last_speed_ = {};
+  remember_parameters();
+}
+
+void Simulation::remember_parameters() {
+  auto p = std::make_shared<Parameters>();
+  for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
+    const SceneBody& body = scene_.bodies[b];
+    const auto& names = model_->bodies[b].regions;
+    const bool has_rest = std::find(names.begin(), names.end(), "rest") != names.end();
+    if (body.regions.empty() || has_rest) p->parts.push_back({body.name, "", body.material});
+    for (const SceneRegion& r : body.regions) p->parts.push_back({body.name, r.name, r.material});
+  }
+  p->gravity = scene_.gravity;
+  p->stepper = scene_.stepper;
+  p->dt = scene_.dt.value_or(0.0);
+  if (scene_.ground) {
+    p->has_ground = true;
+    p->ground_point = scene_.ground->point;
+    p->ground_normal = scene_.ground->normal;
+  }
+  p->scene = scene_.name;
+  p->title = scene_.title;
+  p->look_for = scene_.look_for;
+  p->nodes = model_->body_node_count();
+  p->tets = model_->tet_count();
+  p->springs = model_->spring_count();
+  for (const double m : model_->mass) p->mass += m;
+  p->document = document_with_base(scene_);
+  parameters_ = std::move(p);
+  ++changes_;
+}
+
+void Simulation::take_step() {
+  steps(Clock::time_point::max(), nullptr, true);
+}
+
+bool Simulation::advance(Clock::time_point deadline, const std::atomic<bool>* hurry) {
+  return steps(deadline, hurry, false);
+}
+
+bool Simulation::steps(Clock::time_point deadline, const std::atomic<bool>* hurry, bool only_one) {
+  const auto may_go_on = [&] {
+    return !only_one && Clock::now() < deadline && (hurry == nullptr || !hurry->load());
+  };
+  // A set stop flag makes advance_frame() return after every step: the clock and the commands are
+  // looked at in between, however many steps a frame takes.
+  static const std::atomic<bool> after_one_step{true};
+  const Clock::time_point start = Clock::now();
+  const double time = run_.state.time;
+  const std::int64_t step = run_.state.step;
+  const std::int64_t newton = run_.newton_steps;
+  const std::int64_t products = run_.products;
+  bool finished = false;
+  try {
+    do {
+      finished = stepping_->advance_frame(run_, &after_one_step);
+    } while (!finished && may_go_on());
+  } catch (const Error& e) {
+    running_ = false;
+    report(e);
+    run_.state = good_;
+    run_.steps_left = 0;
+    run_.frame = static_cast<std::int64_t>(std::floor(good_.time / interval_of(stepped_) + 1e-9));
+    hands_.release_all(*model_, run_.state);
+    return true;
+  }
+  if (finished) good_ = run_.state;
+  speed_.wall += std::chrono::duration<double>(Clock::now() - start).count();
+  speed_.simulated += run_.state.time - time;
+  speed_.steps += run_.state.step - step;
+  speed_.newton += run_.newton_steps - newton;
+  speed_.products += run_.products - products;
+  if (speed_.wall > speed_window || last_speed_.steps == 0) {
+    last_speed_ = speed_;
+    if (speed_.wall > speed_window) speed_ = {};
+  }
+  return finished;
+}
+
+// What keeps the simulation from the speed that is asked for.
+std::string Simulation::limiting() const {
+  if (last_speed_.wall == 0.0) return {};
+  const double capacity = last_speed_.simulated / last_speed_.wall;
+  if (capacity >= time_scale_) return {};
+  if (run_.stepper == "implicit") {
+    return fmt::format("each implicit step takes {:.1f} Newton steps",
+                       static_cast<double>(last_speed_.newton) /
+                           static_cast<double>(std::max<std::int64_t>(1, last_speed_.steps)));
+  }
+  return fmt::format(
+      "stiffness: the stable step is {:.3g} ms, {:.0f} steps a frame; "
+      "a softer material, a coarser mesh or implicit steps are faster",
+      1e3 * run_.stable_step, 1.0 / (frames_per_second * run_.step));
+}
+
+Status Simulation::status() {
+  Status s;
+  s.revision = revision_;
+  s.changes = changes_;
+  s.running = running_;
+  s.time = run_.state.time;
+  s.step = run_.state.step;
+  s.dt = run_.step > 0.0 ? run_.step : run_.target_step;
+  s.stable_step = run_.stable_step;
+  s.stepper = run_.stepper;
+  s.reason = run_.stepper_reason;
+  s.time_scale = time_scale_;
+  const Speed& v = last_speed_;
+  if (v.steps > 0) {
+    const auto count = static_cast<double>(v.steps);
+    s.capacity = v.simulated / v.wall;
+    s.ms_per_step = 1e3 * v.wall / count;
+    s.steps_per_frame = count / (frames_per_second * v.simulated);
+    s.newton_per_step = static_cast<double>(v.newton) / count;
+    s.products_per_newton =
+        static_cast<double>(v.products) / static_cast<double>(std::max<std::int64_t>(1, v.newton));
+  }
+  s.limit = limiting();
+  s.energy = measure_energies(*model_, run_.state, stepping_->workspace());
+  double rest = 0.0;
+  double volume = 0.0;
+  for (const Body& body : model_->bodies) {
+    rest += body.rest_volume;
+    volume += body.rest_volume * volume_ratio(*model_, body, run_.state.position);
+  }
+  s.volume_ratio = rest > 0.0 ? volume / rest : 1.0;
+  const StretchRange range = measure_stretch(*model_, run_.state.position);
+  s.max_stretch = range.stretch;
+  s.max_compress = range.compress;
+  s.contacts = run_.contacts;
+  s.inverted_tets = count_inverted(*model_, run_.state.position);
+  s.hands = hands_.status(*model_, run_.state);
+  s.error = error_;
+  s.errors = errors_;
+  return s;
+}
+
+Frame Simulation::frame() {
+  Frame f;
+  f.revision = revision_;
+  f.number = ++frames_;
+  f.time = run_.state.time;
+  f.quantity = quantity_;
+  f.position.reserve(3 * topology_->node.size());
+  for (const Index n : topology_->node) {
+    for (int c = 0; c < 3; ++c) {
+      f.position.push_back(static_cast<float>(run_.state.position[uz(n)][c]));
+    }
+  }
+  f.value = measure(quantity_, *model_, run_.state, *topology_);
+  return f;
+}
+
+}  // namespace sinew::live

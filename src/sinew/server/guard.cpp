@@ -1,0 +1,69 @@
+#include "sinew/server/guard.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <random>
+
+namespace sinew::server {
+namespace {
+
+std::string lower(std::string_view text) {
+  std::string out(text);
+  std::transform(out.begin(), out.end(), out.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return out;
+}
+
+}  // namespace
+
+bool is_loopback(std::string_view address) {
+  return address == "localhost" || address == "::1" || address.starts_with("127.");
+}
+
+bool host_allowed(const Door& door, std::string_view host) {
+  if (!door.token.empty()) return true;
+  const std::string name = lower(host);
+  for (const char* own : {"127.0.0.1", "localhost", "[::1]"}) {
+    if (name == fmt::format("{}:{}", own, door.port)) return true;
+    if (door.port == 80 && name == own) return true;
+  }
+  return name == fmt::format("{}:{}", door.host, door.port);
+}
+
+bool origin_allowed(std::string_view origin, std::string_view host) {
+  return origin.empty() || lower(origin) == "http://" + lower(host);
+}
+
+bool token_allowed(const Door& door, std::string_view target) {
+  if (door.token.empty()) return true;
+  const std::size_t query = target.find('?');
+  if (query == std::string_view::npos) return false;
+  std::string_view rest = target.substr(query + 1);
+  while (!rest.empty()) {
+    const std::size_t end = rest.find('&');
+    const std::string_view part = rest.substr(0, end);
+    rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
+    if (!part.starts_with("token=")) continue;
+    const std::string_view given = part.substr(6);
+    if (given.size() != door.token.size()) return false;
+    int differs = 0;
+    for (std::size_t i = 0; i < given.size(); ++i) differs |= given[i] ^ door.token[i];
+    return differs == 0;
+  }
+  return false;
+}
+
+std::string_view path_of(std::string_view target) {
+  return target.substr(0, target.find('?'));
+}
+
+std::string make_token() {
+  std::random_device device;
+  std::string token;
+  for (int i = 0; i < 4; ++i) token += fmt::format("{:08x}", device());
+  return token;
+}
+
+}  // namespace sinew::server

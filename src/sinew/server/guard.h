@@ -1,0 +1,35 @@
+// Who may talk to the server: pure functions on what a request says. docs/protocol.md, "Safety".
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace sinew::server {
+
+struct Door {
+  std::string host = "127.0.0.1";  // the address it listens at
+  unsigned short port = 0;
+  std::string token;  // empty: none is needed
+};
+
+// Whether the address is one that only this machine can reach.
+bool is_loopback(std::string_view address);
+
+// Without a token: the Host header has to be a name of this machine at the server's port, so that
+// no foreign name that is made to lead here (DNS rebinding) gets in. With a token any Host will do.
+bool host_allowed(const Door& door, std::string_view host);
+
+// A page of another site may not open a socket here: an Origin has to be that of the Host. Programs
+// that are no browser send none.
+bool origin_allowed(std::string_view origin, std::string_view host);
+
+// Whether the target's query holds the token; compares all of it, however early it differs.
+bool token_allowed(const Door& door, std::string_view target);
+
+// The path of a target, without its query.
+std::string_view path_of(std::string_view target);
+
+// 128 bits from the system, as 32 hexadecimal digits.
+std::string make_token();
+
+}  // namespace sinew::server

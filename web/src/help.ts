@@ -1,0 +1,47 @@
+// The overlay that names every key and gesture.
+import { h } from "./dom";
+
+export const KEYS: [string, string][] = [
+  ["Space", "Run or pause"],
+  ["S", "One step"],
+  ["Shift + S", "One frame (1/60 s)"],
+  ["R", "Back to the start"],
+  ["T", "Change between pulling and pinning"],
+  ["Esc", "Let go of everything; close this"],
+  ["C", "Next colouring (Shift: previous)"],
+  ["W", "Wireframe"],
+  ["U", "Undeformed ghost"],
+  ["N", "Pinned nodes"],
+  ["G", "Ground grid"],
+  ["F", "Whole body in view"],
+  ["P", "Panel"],
+  ["H or ?", "This help"],
+];
+const GESTURES: [string, string][] = [
+  ["Drag the tissue", "Pull it: a spring from there to the pointer"],
+  ["Shift + click the tissue", "Pin it there; again: let go"],
+  ["Drag beside it", "Turn the view"],
+  ["Wheel or two fingers", "Zoom"],
+  ["Right button or two fingers", "Move the view"],
+];
+
+export class Help {
+  readonly element: HTMLDialogElement;
+
+  constructor() {
+    const close = h("button", { type: "button", class: "text" }, "Close");
+    const list = (entries: [string, string][]) =>
+      h("dl", {}, ...entries.flatMap(([key, what]) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, what)]));
+    this.element = h("dialog", { id: "help", "aria-label": "Keys and gestures" },
+      h("h2", {}, "Keys"), list(KEYS), h("h2", {}, "Mouse and touch"), list(GESTURES), close);
+    close.addEventListener("click", () => this.element.close());
+    this.element.addEventListener("click", (e) => {
+      if (e.target === this.element) this.element.close();
+    });
+  }
+
+  toggle(): void {
+    if (this.element.open) this.element.close();
+    else this.element.showModal();
+  }
+}

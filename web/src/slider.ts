@@ -1,0 +1,84 @@
+// A slider with its number beside it; straight or logarithmic.
+import { h } from "./dom";
+
+export interface SliderOptions {
+  label: string;
+  low: number;
+  high: number;
+  log?: boolean;
+  step?: number; // of the straight ones
+  show: (value: number) => string;
+  /** Told while the user moves it; no faster than every 40 ms. */
+  changed: (value: number) => void;
+}
+
+const STEPS = 600; // of a logarithmic slider
+const BETWEEN = 40; // [ms]
+
+let count = 0;
+
+export class Slider {
+  readonly element: HTMLElement;
+  readonly input: HTMLInputElement;
+  private readonly output: HTMLOutputElement;
+  private waiting: ReturnType<typeof setTimeout> | null = null;
+  private told = 0;
+  private touched = -1e9; // when the user last moved it [ms]
+
+  constructor(private readonly options: SliderOptions) {
+    const id = `slider-${++count}`;
+    const { low, high, log } = options;
+    this.input = h("input", {
+      id,
+      type: "range",
+      min: log ? 0 : low,
+      max: log ? STEPS : high,
+      step: log ? 1 : (options.step ?? (high - low) / 500),
+    });
+    this.output = h("output", { for: id });
+    this.element = h(
+      "div",
+      { class: "row slider" },
+      h("label", { for: id }, options.label),
+      this.output,
+      this.input,
+    );
+    this.input.addEventListener("input", () => this.moved());
+    this.set(low);
+  }
+
+  /** The value that the simulation has; not while the user moves the slider. */
+  set(value: number): void {
+    if (performance.now() - this.touched < 700) return;
+    const { low, high, log } = this.options;
+    const at = log ? (STEPS * Math.log(value / low)) / Math.log(high / low) : value;
+    this.input.value = String(at);
+    this.write(value);
+  }
+
+  get value(): number {
+    const at = Number(this.input.value);
+    const { low, high, log } = this.options;
+    return log ? Number((low * (high / low) ** (at / STEPS)).toPrecision(3)) : at;
+  }
+
+  private moved(): void {
+    this.touched = performance.now();
+    this.write(this.value);
+    if (this.waiting !== null) return;
+    const wait = Math.max(0, this.told + BETWEEN - performance.now());
+    this.waiting = setTimeout(() => {
+      this.waiting = null;
+      this.told = performance.now();
+      this.options.changed(this.value);
+    }, wait);
+  }
+
+  private write(value: number): void {
+    const text = this.options.show(value);
+    this.output.value = text;
+    this.input.setAttribute("aria-valuetext", text);
+    const share = (Number(this.input.value) - Number(this.input.min)) / (Number(this.input.max) - Number(this.input.min));
+    this.input.style.setProperty("--share", `${100 * share}%`);
+  }
+}
