@@ -7,10 +7,14 @@
 #include <atomic>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include "sinew/base/error.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/springs.h"
 #include "sinew/live/carry_over.h"
+#include "sinew/live/look.h"
+#include "sinew/run/recorder.h"
 #include "sinew/run/summary.h"
 #include "sinew/scene/build.h"
 
@@ -68,11 +72,11 @@ Simulation::Simulation(const Scene& scene) {
 void Simulation::apply(const Command& command) {
   if (!std::holds_alternative<Drag>(command)) error_.clear();
   std::visit([&](const auto& c) { act(c); }, command);
+  if (other_) tell_other(command);
 }
 
 void Simulation::report(const Error& error) {
-  error_ = error.message();
-  if (!error.remedy().empty()) error_ += "; remedy: " + error.remedy();
+  error_ = error.what();
   ++errors_;
 }
 
@@ -87,28 +91,65 @@ void Simulation::act(const Advance& c) {
   }
 }
 
-void Simulation::act(const Reset&) {
+void Simulation::let_go() {
   hands_.release_all(*model_, run_.state);
+  ball_.remove(*model_, run_.state);
+}
+
+void Simulation::act(const Reset&) {
+  let_go();
   rebuild(scene_, nullptr);
 }
 
+// Nothing of the scene before is touched until the new one stands.
 void Simulation::act(const Load& c) {
-  if (model_) hands_.release_all(*model_, run_.state);
-  hands_ = {};
-  rebuild(c.scene, nullptr);
+  const Hands hands = std::exchange(hands_, {});
+  const Ball ball = std::exchange(ball_, {});
+  try {
+    rebuild(c.scene, nullptr);
+  } catch (...) {
+    hands_ = hands;
+    ball_ = ball;
+    throw;
+  }
   running_ = false;
-  ++revision_;
-  topology_ = std::make_shared<Topology>(
-      make_topology(*model_, revision_, scene_.title.empty() ? scene_.name : scene_.title));
+  other_.reset();
+  compare_.clear();
+  ++opened_;
+  show({}, false);
+}
+
+void Simulation::show(const Cut& cut, bool springs) {
+  cut_ = cut;
+  springs_ = springs;
+  topology_ = std::make_shared<Topology>(make_topology(*model_, ++revision_, cut_, springs_));
+  if (other_) other_->topology_ = topology_;
   remember_parameters();
 }
 
-void Simulation::act(const SetMaterial& c) {
-  require_key(material_keys, c.key);
-  require_plain(c.value);
+void Simulation::act(const SetCut& c) {
+  require_point(c.cut.normal);
+  if (!std::isfinite(c.cut.offset)) {
+    throw Error(ErrorKind::usage, "the offset is no finite number", "give it in metres");
+  }
+  show(c.cut, springs_);
+}
+
+void Simulation::act(const SetSprings& c) {
+  show(cut_, c.shown);
+}
+
+void Simulation::act(const SaveState& c) {
+  measure_energies(*model_, run_.state, stepping_->workspace());  // fills what the file holds
+  c.done(format_frame(*model_, run_, stepping_->workspace(), io::VtuEncoding::zlib));
+}
+
+namespace {
+// Overrides that give a key this value in a body or region, or all of them.
+std::vector<std::string> material_overrides(const Scene& scene, const SetMaterial& c) {
   std::vector<std::string> overrides;
   bool found = false;
-  for (const SceneBody& body : scene_.bodies) {
+  for (const SceneBody& body : scene.bodies) {
     if (!c.body.empty() && body.name != c.body) continue;
     found = found || c.region.empty();
     const std::string at = "body." + body.name + ".";
@@ -123,7 +164,14 @@ void Simulation::act(const SetMaterial& c) {
     throw Error(ErrorKind::usage, "the scene has no such body or region",
                 "name one that the message 'scene' lists");
   }
-  change(overrides);
+  return overrides;
+}
+}  // namespace
+
+void Simulation::act(const SetMaterial& c) {
+  require_key(material_keys, c.key);
+  require_plain(c.value);
+  change(material_overrides(scene_, c));
 }
 
 void Simulation::act(const SetStepping& c) {
@@ -181,12 +229,26 @@ void Simulation::act(const Grab& c) {
 void Simulation::act(const Drag& c) {
   require_hand(c.hand);
   require_point(c.point);
-  hands_.drag(*model_, run_.state, c.hand, c.point);
+  hands_.drag(*model_, run_.state, c.hand, c.point, size());
 }
 
 void Simulation::act(const Release& c) {
   require_hand(c.hand);
   hands_.release(*model_, run_.state, c.hand);
+}
+
+void Simulation::act(const MoveBall& c) {
+  require_point(c.point);
+  if (!(c.radius >= 0.0 && c.radius <= 10.0 * size())) {
+    throw Error(ErrorKind::usage, "the radius is not from 0 to ten times the body's size",
+                "0 for the usual one");
+  }
+  const double usual = ball_.is_there() ? ball_.radius() : 0.1 * size();
+  ball_.move(*model_, run_.state, c.point, c.radius > 0.0 ? c.radius : usual, size());
+}
+
+void Simulation::act(const RemoveBall&) {
+  ball_.remove(*model_, run_.state);
 }
 
 // The scene with other values, going on from where the nodes are.
@@ -229,7 +291,10 @@ void Simulation::rebuild(const Scene& scene, const State* keep) {
   model_ = std::move(model);
   run_ = std::move(run);
   good_ = run_.state;
-  hands_.hold(*model_, run_.state, run_.stable_step > 0.0 ? run_.stable_step : no_limit);
+  const double stable = run_.stable_step > 0.0 ? run_.stable_step : no_limit;
+  hands_.hold(*model_, run_.state, stable);
+  ball_.hold(*model_, run_.state, stable);
+  ahead_ = false;
   speed_ = last_speed_ = {};
   remember_parameters();
 }
@@ -251,6 +316,12 @@ void Simulation::remember_parameters() {
     p->ground_point = scene_.ground->point;
     p->ground_normal = scene_.ground->normal;
   }
+  p->opened = opened_;
+  for (const Probe& probe : model_->probes) p->probes.push_back(probe.name);
+  for (const SceneObstacle& o : scene_.obstacles) p->obstacles.push_back({o.name, o.radius});
+  p->compare = compare_;
+  p->cut = cut_;
+  p->springs_shown = springs_;
   p->scene = scene_.name;
   p->title = scene_.title;
   p->look_for = scene_.look_for;
@@ -265,10 +336,16 @@ void Simulation::remember_parameters() {
 
 void Simulation::take_step() {
   steps(Clock::time_point::max(), nullptr, true);
+  catch_up(Clock::time_point::max(), nullptr);
 }
 
 bool Simulation::advance(Clock::time_point deadline, const std::atomic<bool>* hurry) {
-  return steps(deadline, hurry, false);
+  if (!ahead_) ahead_ = steps(deadline, hurry, false);
+  if (!ahead_ || !catch_up(deadline, hurry)) return false;
+  ahead_ = false;
+  hands_.follow(*model_, run_.state, size());
+  ball_.follow(*model_, run_.state, interval_of(stepped_));
+  return true;
 }
 
 bool Simulation::steps(Clock::time_point deadline, const std::atomic<bool>* hurry, bool only_one) {
@@ -294,7 +371,7 @@ bool Simulation::steps(Clock::time_point deadline, const std::atomic<bool>* hurr
     run_.state = good_;
     run_.steps_left = 0;
     run_.frame = static_cast<std::int64_t>(std::floor(good_.time / interval_of(stepped_) + 1e-9));
-    hands_.release_all(*model_, run_.state);
+    let_go();
     return true;
   }
   if (finished) good_ = run_.state;
@@ -313,8 +390,10 @@ bool Simulation::steps(Clock::time_point deadline, const std::atomic<bool>* hurr
 // What keeps the simulation from the speed that is asked for.
 std::string Simulation::limiting() const {
   if (last_speed_.wall == 0.0) return {};
-  const double capacity = last_speed_.simulated / last_speed_.wall;
-  if (capacity >= time_scale_) return {};
+  if (capacity() >= time_scale_) return {};
+  if (other_ && capacity() < 0.7 * last_speed_.simulated / last_speed_.wall) {
+    return "two bodies are stepped, and the one with the other law takes most of the time";
+  }
   if (run_.stepper == "implicit") {
     return fmt::format("each implicit step takes {:.1f} Newton steps",
                        static_cast<double>(last_speed_.newton) /
@@ -341,7 +420,7 @@ Status Simulation::status() {
   const Speed& v = last_speed_;
   if (v.steps > 0) {
     const auto count = static_cast<double>(v.steps);
-    s.capacity = v.simulated / v.wall;
+    s.capacity = capacity();
     s.ms_per_step = 1e3 * v.wall / count;
     s.steps_per_frame = count / (frames_per_second * v.simulated);
     s.newton_per_step = static_cast<double>(v.newton) / count;
@@ -363,6 +442,16 @@ Status Simulation::status() {
   s.contacts = run_.contacts;
   s.inverted_tets = count_inverted(*model_, run_.state.position);
   s.hands = hands_.status(*model_, run_.state);
+  for (const ProbeReading& p : read_probes(*model_, run_.state.position)) {
+    s.probes.push_back(p.displacement);
+  }
+  for (const ObstacleReading& o : read_obstacles(*model_, run_.state.position, run_.state.time)) {
+    if (s.obstacles.size() == scene_.obstacles.size()) break;  // the ball comes last
+    const double radius = model_->obstacles[s.obstacles.size()].radius;
+    s.obstacles.push_back({o.center, radius, o.force, o.contacts});
+  }
+  s.ball = ball_.status(*model_, run_.state);
+  if (other_) s.distance = distance_between(pair_.mine, pair_.others, model_->body_node_count());
   s.error = error_;
   s.errors = errors_;
   return s;
@@ -374,13 +463,14 @@ Frame Simulation::frame() {
   f.number = ++frames_;
   f.time = run_.state.time;
   f.quantity = quantity_;
-  f.position.reserve(3 * topology_->node.size());
-  for (const Index n : topology_->node) {
-    for (int c = 0; c < 3; ++c) {
-      f.position.push_back(static_cast<float>(run_.state.position[uz(n)][c]));
-    }
-  }
+  // Compared bodies are shown at the same time, where both have got to.
+  f.position = gather(other_ ? pair_.mine : run_.state.position, topology_->node);
   f.value = measure(quantity_, *model_, run_.state, *topology_);
+  f.contact = find_contacts(*model_, run_.state, *topology_);
+  if (other_) {
+    f.compared = gather(pair_.others, topology_->node);
+    if (quantity_ == Quantity::distance) f.value = distances(f.position, f.compared);
+  }
   return f;
 }
 
