@@ -2,7 +2,7 @@
 import { type Arrangement, SAME_PLACE } from "./compared";
 import { h } from "./dom";
 import { fill, section, select } from "./form";
-import { length } from "./format";
+import { digits, length } from "./format";
 import type { Command, SceneInfo, Status } from "./protocol";
 
 export class CompareControl {
@@ -49,7 +49,9 @@ export class CompareControl {
 
 export function distanceInWords({ largest, mean }: { largest: number; mean: number }): string {
   if (largest < SAME_PLACE) return "Both are in the same place";
-  const unbroken = (metres: number) => length(metres, 2).replace(" ", "\u00a0");
+  // Tenths of a millimetre, too, are said in millimetres.
+  const text = (metres: number) => (metres >= 1e-4 && metres < 1e-2 ? `${digits(1e3 * metres, 2)} mm` : length(metres, 2));
+  const unbroken = (metres: number) => text(metres).replace(" ", "\u00a0");
   return `Largest distance ${unbroken(largest)}, mean ${unbroken(mean)}`;
 }
 

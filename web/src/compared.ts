@@ -15,13 +15,15 @@ const APART = 1.1; // of the body's extent, from middle to middle
 export const SAME_PLACE = 1e-7; // [m]: what is nearer is not apart
 const ABOVE = 34; // [px] of the labels over the bodies
 const ROW = 28;
+const SEEN_THROUGH = 1.5; // largest distances
 
 export class Compared {
   readonly group: THREE.Group;
   arrangement: Arrangement = "over";
   /** From the first body to where this one is drawn [m]. */
   readonly shift = new THREE.Vector3();
-  private readonly surface = new Surface({ clear: 0.08, rim: 0.62 });
+  private readonly nearer = { value: 0 }; // [m]
+  private readonly surface = new Surface({ clear: 0.1, rim: 0.62, nearer: this.nearer });
   private readonly labels: [Label, Label];
   private titles: [string, string] | null = null;
   private ice: Float32Array = new Float32Array();
@@ -56,6 +58,8 @@ export class Compared {
   /** How far the bodies are apart at most [m]. */
   tell(largest: number): void {
     if (!this.titles) return;
+    // Where it lies inside the first body it is seen all the same, but not through anything else.
+    this.nearer.value = SEEN_THROUGH * largest;
     this.labels[0].write(this.titles[0]);
     this.labels[1].write(this.titles[1] + (largest > SAME_PLACE ? ` · up to ${length(largest, 2)} away` : ""));
   }

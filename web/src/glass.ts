@@ -11,9 +11,11 @@ export interface GlassOptions {
   vertexColors?: boolean;
   clear: number; // opacity where it faces the viewer
   rim: number; // and at its rim
+  /** How much nearer than it is it counts as, where it is a question of what hides what [m]. */
+  nearer?: { value: number };
 }
 
-export function glass({ color = 0xffffff, vertexColors = false, clear, rim }: GlassOptions): THREE.MeshPhysicalMaterial {
+export function glass({ color = 0xffffff, vertexColors = false, clear, rim, nearer = { value: 0 } }: GlassOptions): THREE.MeshPhysicalMaterial {
   const material = new THREE.MeshPhysicalMaterial({
     color,
     vertexColors,
@@ -26,6 +28,7 @@ export function glass({ color = 0xffffff, vertexColors = false, clear, rim }: Gl
     shadowSide: THREE.BackSide,
   });
   material.onBeforeCompile = (shader) => {
+    pull(shader, nearer);
     shader.fragmentShader = shader.fragmentShader.replace(
       "#include <opaque_fragment>",
       `float toViewer = abs(dot(normalize(vViewPosition), normal));
@@ -38,9 +41,23 @@ export function glass({ color = 0xffffff, vertexColors = false, clear, rim }: Gl
 }
 
 /** Written before the glass itself, so that only its nearest side is seen. */
-export function nearestOnly(): THREE.MeshBasicMaterial {
+export function nearestOnly(nearer = { value: 0 }): THREE.MeshBasicMaterial {
   // In the list of what is clear, or what is opaque and behind it would not be drawn.
-  return new THREE.MeshBasicMaterial({ colorWrite: false, transparent: true, ...IN_FRONT });
+  const material = new THREE.MeshBasicMaterial({ colorWrite: false, transparent: true, ...IN_FRONT });
+  material.onBeforeCompile = (shader) => pull(shader, nearer);
+  material.customProgramCacheKey = () => "nearest only";
+  return material;
+}
+
+/** Changes the depth alone, not the place in the picture. */
+function pull(shader: THREE.WebGLProgramParametersWithUniforms, nearer: { value: number }): void {
+  shader.uniforms.nearer = nearer;
+  shader.vertexShader = `uniform float nearer;\n${shader.vertexShader.replace(
+    "#include <project_vertex>",
+    `#include <project_vertex>
+     vec4 pulled = projectionMatrix * (mvPosition + vec4(0.0, 0.0, nearer, 0.0));
+     gl_Position.z = pulled.z / pulled.w * gl_Position.w;`,
+  )}`;
 }
 
 export const GLASS_ORDER = 3; // after grid and lines

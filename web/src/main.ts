@@ -187,7 +187,8 @@ class App {
     this.world.hear(s);
     const slow = s.running && s.rate > 0 && s.rate < SLOW * s.time_scale;
     this.speed.className = `badge ${!s.running ? "" : slow ? "slow" : "good"}`;
-    this.speed.textContent = !s.running ? "paused" : s.rate > 0 ? `${digits(s.rate, 2)}× real time` : "…";
+    if (!s.running || s.rate === 0) this.speed.textContent = s.running ? "…" : "paused";
+    else this.speed.replaceChildren(`${digits(s.rate, 2)}×`, h("span", { class: "roomy" }, " real time"));
     const why = s.limit && ` – ${s.limit}`;
     this.limit.textContent = slow ? `Slower than ${s.time_scale === 1 ? "real time" : "asked for"}${why}` : "";
     if (before && s.time < before.time) this.world.tissue.range.reset();

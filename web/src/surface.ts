@@ -1,6 +1,6 @@
 // The skin of one body: a mesh that follows positions and colours by node.
 import * as THREE from "three";
-import { glass, GLASS_ORDER, nearestOnly } from "./glass";
+import { glass, GLASS_ORDER, type GlassOptions, nearestOnly } from "./glass";
 import type { Corners } from "./smooth";
 
 const TISSUE_GLOSS = { roughness: 0.5, clearcoat: 0.45, clearcoatRoughness: 0.35 };
@@ -16,8 +16,8 @@ export class Surface {
   readonly box = new THREE.Box3();
   private nodeOf: Uint32Array = new Uint32Array();
 
-  /** `clear`, `rim`: opacities of the glass that it can be made of. */
-  constructor(opacity: { clear: number; rim: number }) {
+  /** `glassy`: of the glass that it can be made of. */
+  constructor(glassy: GlassOptions) {
     this.solid = new THREE.MeshPhysicalMaterial({
       vertexColors: true,
       ...TISSUE_GLOSS,
@@ -28,11 +28,11 @@ export class Surface {
     this.solid.polygonOffset = true;
     this.solid.polygonOffsetFactor = 1;
     this.solid.polygonOffsetUnits = 1;
-    this.clear = glass({ vertexColors: true, ...opacity });
+    this.clear = glass({ vertexColors: true, ...glassy });
     this.mesh = new THREE.Mesh(new THREE.BufferGeometry(), this.solid);
     this.mesh.castShadow = true;
     this.mesh.receiveShadow = true;
-    this.veil = new THREE.Mesh(this.mesh.geometry, nearestOnly());
+    this.veil = new THREE.Mesh(this.mesh.geometry, nearestOnly(glassy.nearer));
     this.veil.renderOrder = GLASS_ORDER - 1;
     this.veil.visible = false;
     for (const o of [this.mesh, this.veil]) {
