@@ -157,7 +157,7 @@ test("a cut follows its slider and its direction; what is held stays held", () =
     await shownCut("x");
     const offset = (await state(page, "scene")).cut.offset;
     await page.getByLabel("Offset").focus();
-    for (let i = 0; i < 5; ++i) await page.keyboard.press("PageUp");
+    for (let i = 0; i < 2; ++i) await page.keyboard.press("PageUp");
     await until(page, (o) => window.sinew.state.scene.cut.offset > o + 0.01, offset);
     await page.selectOption("#coloring", "stress");
     await picture(page, "cut");

@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { glass, GLASS_ORDER } from "./glass";
 import type { Picker } from "./picker";
-import type { Command, Vec } from "./protocol";
+import type { Command, SphereStatus, Vec } from "./protocol";
 import type { Stage } from "./stage";
 
 const PUSH_TIME = 220; // [ms] that the way in takes, roughly
@@ -25,6 +25,7 @@ export class BallTool {
   private readonly target = new THREE.Vector3(); // of the centre, in the plane of the picture
   private pushed = 0; // beyond the plane [m]
   private sent = "";
+  private there = false; // in its full size, as far as one has heard
   private now = 0; // [ms]
   private readonly preview: THREE.Mesh;
 
@@ -76,7 +77,15 @@ export class BallTool {
   forget(): void {
     this.pointer = -1;
     this.sent = "";
+    this.there = false;
+    this.foresee(null);
     this.stage.controls.enabled = true;
+  }
+
+  /** The ball that the simulation has: while that is not there or still small, one sees where it is
+   * to be. */
+  hear(ball: SphereStatus | null): void {
+    this.there = ball !== null && ball.radius > 0.5 * this.radius;
   }
 
   /** Once per picture: pushes on, and sends where the ball is to be. */
@@ -85,7 +94,9 @@ export class BallTool {
     this.now = now;
     if (!this.pushing) return;
     this.pushed += (this.depth * this.radius - this.pushed) * (1 - Math.exp(-passed / PUSH_TIME));
-    const point = this.target.clone().addScaledVector(this.inward, this.pushed).toArray() as Vec;
+    const center = this.target.clone().addScaledVector(this.inward, this.pushed);
+    this.foresee(this.there ? null : center);
+    const point = center.toArray() as Vec;
     const message: Command = { type: "ball", point, radius: this.radius };
     const key = point.map((c) => (c / this.radius).toFixed(4)).join() + this.radius;
     if (key !== this.sent && this.send(message)) this.sent = key;

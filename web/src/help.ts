@@ -36,10 +36,10 @@ export class Help {
 
   constructor() {
     const close = h("button", { type: "button", class: "text" }, "Close");
-    const list = (entries: [string, string][]) =>
-      h("dl", {}, ...entries.flatMap(([key, what]) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, what)]));
+    const list = (entries: [string, string][], className = "") =>
+      h("dl", { class: className }, ...entries.flatMap(([key, what]) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, what)]));
     this.element = h("dialog", { id: "help", "aria-label": "Keys and gestures" },
-      h("h2", {}, "Keys"), list(KEYS), h("h2", {}, "Mouse and touch"), list(GESTURES), close);
+      h("h2", {}, "Keys"), list(KEYS, "pairs"), h("h2", {}, "Mouse and touch"), list(GESTURES), close);
     close.addEventListener("click", () => this.element.close());
     this.element.addEventListener("click", (e) => {
       if (e.target === this.element) this.element.close();

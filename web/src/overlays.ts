@@ -4,7 +4,7 @@ import type { Topology } from "./protocol";
 
 export type Overlay = "wireframe" | "ghost" | "pins" | "springs" | "contacts";
 
-const SPRING_OPACITY = 0.4; // many lie behind each other
+const SPRING_OPACITY = 0.9; // of a thousand; the more lie behind each other, the clearer each is
 const CONTACT_PIXELS = 11;
 const THROUGH = 0.3; // how much of a mark is seen through what hides it
 
@@ -13,7 +13,7 @@ export class Overlays {
   private readonly wires: THREE.LineSegments;
   private readonly ghost: THREE.Mesh;
   private readonly pins: THREE.Points;
-  private readonly springs: THREE.LineSegments;
+  private readonly springs: THREE.LineSegments<THREE.BufferGeometry, THREE.LineBasicMaterial>;
   private readonly contacts: THREE.Points[];
   private position = new THREE.BufferAttribute(new Float32Array(), 3); // by node, shared by all but the ghost
   private color = new THREE.BufferAttribute(new Float32Array(), 3);
@@ -34,7 +34,7 @@ export class Overlays {
     );
     this.springs = new THREE.LineSegments(
       new THREE.BufferGeometry(),
-      new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, opacity: SPRING_OPACITY, depthWrite: false }),
+      new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }),
     );
     // A mark lies between two bodies as a rule: what hides it lets it shine through.
     const map = ringTexture();
@@ -71,6 +71,8 @@ export class Overlays {
     this.pins.geometry = geometry(new THREE.BufferAttribute(pinned, 1));
     this.springs.geometry = geometry(new THREE.BufferAttribute(topology.springs.slice(), 1));
     this.springs.geometry.setAttribute("color", this.color);
+    const opacity = SPRING_OPACITY / Math.sqrt(Math.max(1, topology.springs.length / 2000));
+    this.springs.material.opacity = Math.max(0.12, opacity);
     for (const marks of this.contacts) marks.geometry = geometry(this.touching);
     this.touch(null);
     this.ghost.geometry = new THREE.BufferGeometry();

@@ -8,6 +8,7 @@ import type { Stage } from "./stage";
 import { Track } from "./track";
 
 const LEAST_FORCE = 1e-3; // [N] that is worth a label
+const GROWTH = 0.3; // share of the way to another radius, a picture
 const SHAPE = new THREE.SphereGeometry(1, 64, 40);
 
 /** A sphere with its force, and once more beside a compared body. */
@@ -17,7 +18,7 @@ class Sphere {
   private readonly track = new Track();
   private readonly label: Label;
 
-  constructor(labels: HTMLElement, className: string, materials: THREE.Material[], readonly radius: number) {
+  constructor(labels: HTMLElement, className: string, materials: THREE.Material[], private radius: number) {
     materials.forEach((material, i) => {
       const mesh = new THREE.Mesh(SHAPE, material);
       mesh.castShadow = i === 0;
@@ -34,6 +35,7 @@ class Sphere {
 
   hear(status: SphereStatus, time: number): void {
     this.track.hear(status.center, time);
+    this.radius = status.radius;
     const force = Math.hypot(...status.force);
     this.label.write(force < LEAST_FORCE ? "" : si(force, "N", force < 1 ? 2 : 3));
   }
@@ -44,11 +46,14 @@ class Sphere {
     const appears = !this.group.visible;
     this.group.visible = true;
     const moved = this.track.follow(this.group.position, time, now, this.radius);
+    const grows = Math.abs(this.radius / this.group.scale.x - 1) > 0.01;
+    if (grows) this.group.scale.setScalar(THREE.MathUtils.lerp(this.group.scale.x, this.radius, GROWTH));
+    this.twin.scale.copy(this.group.scale);
     this.twin.visible = beside.lengthSq() > 0;
     this.twin.position.copy(this.group.position).add(beside);
     const pixels = this.radius / stage.metresPerPixel();
     this.label.place(stage, this.group.position, 0.74 * pixels + 6, -0.74 * pixels - 20);
-    return moved || appears;
+    return moved || grows || appears;
   }
 
   remove(): void {
@@ -98,8 +103,7 @@ export class Spheres {
 
   hear(status: Status): void {
     status.obstacles.forEach((o, i) => this.obstacles[i]?.hear(o, status.time));
-    if (this.ball && this.ball.radius !== status.ball?.radius) this.drop();
-    if (!status.ball) return;
+    if (!status.ball) return this.drop();
     if (!this.ball) {
       this.ball = new Sphere(this.labels, "force", this.amber, status.ball.radius);
       this.group.add(this.ball.group, this.ball.twin);

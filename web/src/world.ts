@@ -60,6 +60,7 @@ export class World {
   hear(status: Status): void {
     this.hands.hear(status.hands);
     this.spheres.hear(status);
+    this.ball.hear(status.ball);
     this.tissue.compared.tell(status.distance?.largest ?? 0);
     if (!this.lookAround) return;
     this.lookAround = false;
