@@ -18,6 +18,7 @@ struct ImplicitOptions {
   Scheme scheme = Scheme::sdirk2;
   double tolerance = 1e-6;  // see NewtonReport::residual
   int max_newton = 50;      // Newton steps before the step is cut in half
+  bool single = false;      // forces in single precision, where the tolerance allows it
   Deadline deadline = {};   // of the step; what is there then is the step, however far it is
 };
 
@@ -77,6 +78,7 @@ class ImplicitStepper {
 
   const Model& model_;
   Workspace workspace_;
+  std::shared_ptr<PackedForces> packed_;  // made when first asked for
   LinearSolver linear_;
   double constrained_inertia_ = 0.0;  // what constraints_ was made for
   std::unique_ptr<Constraints> constraints_;
