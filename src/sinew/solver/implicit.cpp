@@ -17,7 +17,6 @@
 namespace sinew {
 namespace {
 
-// From this tolerance on the digits of single precision are more than enough.
 constexpr double single_tolerance = 1e-3;
 
 constexpr int most_cuts = 10;
@@ -67,6 +66,11 @@ double work_of_the_outside(const Model& model, const Field& before, double since
 
 }  // namespace
 
+bool may_take_single(const Model& model, double tolerance) {
+  return tolerance >= single_tolerance && !model.ground && model.limited.empty() &&
+         !model.has_volume_limit;
+}
+
 ImplicitStepper::ImplicitStepper(const Model& model)
     : model_(model), workspace_(model), linear_(model) {}
 
@@ -98,8 +102,7 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
       &from,   &lag,      constraints_->empty() ? nullptr : constraints_.get()};
   const NewtonOptions newton_options{
       options.tolerance, options.max_newton, nullptr, {}, options.deadline};
-  const bool single =
-      options.single && options.tolerance >= single_tolerance && constraints_->empty();
+  const bool single = options.single && may_take_single(model_, options.tolerance);
   if (single && !packed_) packed_ = std::make_shared<PackedForces>(model_);
   if (single) workspace_.packed = packed_;
   move_pins(model_, state);
