@@ -35,6 +35,7 @@ class App {
   private protocolFault = false;
   private readonly show = { wireframe: false, ghost: false, pins: false, grid: true };
   private framesDrawn = 0;
+  private fitted = -1; // the scene that the camera was fitted to, as `opened` counts
 
   private readonly title = h("h1", {}, "Sinew");
   private readonly lookFor = h("p", { class: "look-for" });
@@ -181,11 +182,13 @@ class App {
   }
 
   private build(topology: Topology): void {
-    const again = this.tissue.nodes > 0 && this.tissue.nodes === topology.rest.length / 3;
     this.tissue.build(topology);
     this.hands.forget();
     this.shown = null;
-    if (!again) this.stage.fit(new THREE.Box3().setFromArray(topology.rest), this.scene?.ground ?? null);
+    // A cut or springs bring other nodes of the same scene: the view stays where it is.
+    if (this.scene && this.scene.opened === this.fitted) return;
+    this.stage.fit(new THREE.Box3().setFromArray(topology.rest), this.scene?.ground ?? null);
+    this.fitted = this.scene?.opened ?? -1;
   }
 
   private showStatus(s: Status): void {

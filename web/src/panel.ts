@@ -72,7 +72,7 @@ export class Panel {
   }
 
   showScene(scene: SceneInfo): void {
-    const newParts = this.scene?.revision !== scene.revision;
+    const newParts = this.scene?.opened !== scene.opened;
     this.scene = scene;
     if (newParts) {
       const several = scene.parts.length > 1;

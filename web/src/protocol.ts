@@ -1,6 +1,6 @@
 // The messages of docs/protocol.md, as this page reads them.
 
-export const PROTOCOL = 1;
+export const PROTOCOL = 2;
 export const HEADER_BYTES = 40;
 
 export type Vec = [number, number, number];
@@ -24,8 +24,21 @@ export interface QuantityInfo {
   signed: boolean;
 }
 
+/** A rigid sphere of the scene. */
+export interface ObstacleInfo {
+  name: string;
+  radius: number; // [m]
+}
+
+/** A half of the tets that is not shown: those whose middle X at rest has normal · X > offset [m]. */
+export interface CutPlane {
+  normal: Vec;
+  offset: number;
+}
+
 export interface SceneInfo {
   type: "scene";
+  opened: number; // counts scenes that were opened
   revision: number;
   changes: number;
   name: string;
@@ -43,6 +56,12 @@ export interface SceneInfo {
   regions: string[];
   quantities: QuantityInfo[];
   ground: { point: Vec; normal: Vec } | null;
+  probes: { name: string }[];
+  obstacles: ObstacleInfo[];
+  laws: { name: string; title: string }[]; // that a second body may have
+  compare: string; // the law of the second body; empty without one
+  cut: CutPlane | null;
+  springs_shown: boolean;
 }
 
 export interface HandInfo {
@@ -50,6 +69,13 @@ export interface HandInfo {
   at: Vec;
   target: Vec;
   force: Vec;
+}
+
+/** Where a rigid sphere is, and what pushes it. */
+export interface SphereStatus {
+  center: Vec;
+  force: Vec; // on it [N]
+  contacts: number;
 }
 
 export interface Status {
@@ -76,13 +102,17 @@ export interface Status {
   contacts: number;
   inverted_tets: number;
   hands: HandInfo[];
+  probes: Vec[]; // displacements [m], in the order of the scene's probes
+  obstacles: SphereStatus[]; // in the order of the scene's obstacles
+  ball: (SphereStatus & { radius: number }) | null;
+  distance: { largest: number; mean: number } | null; // from the compared body [m]
   error: string;
   errors: number;
 }
 
 export type Text =
-  | { type: "hello"; protocol: number; version: string }
-  | { type: "role"; controls: boolean; viewers: number }
+  | { type: "hello"; protocol: number; version: string; gallery: boolean }
+  | { type: "role"; controls: boolean; viewers: number; ticket: string }
   | { type: "error"; message: string }
   | SceneInfo
   | Status;
@@ -90,7 +120,8 @@ export type Text =
 export interface Topology {
   kind: "topology";
   revision: number;
-  triangles: Uint32Array; // 3 surface nodes each
+  triangles: Uint32Array; // 3 nodes each
+  springs: Uint32Array; // 2 nodes each; empty unless asked for
   rest: Float32Array; // [m], 3 a node
   region: Uint8Array;
   pinned: Uint8Array;
@@ -104,6 +135,8 @@ export interface Frame {
   quantity: number; // index into SceneInfo.quantities
   position: Float32Array; // [m], 3 a node
   value: Float32Array;
+  compared: Float32Array | null; // [m], 3 a node: of the compared body
+  contact: Uint8Array | null; // 1: touches the ground, an obstacle or the ball
 }
 
 export type Command =
@@ -118,42 +151,81 @@ export type Command =
   | { type: "grab"; hand: number; node: number; point: Vec; radius?: number }
   | { type: "drag"; hand: number; point: Vec }
   | { type: "release"; hand: number }
+  | { type: "ball"; point?: Vec; radius?: number }
+  | { type: "cut"; normal?: Vec; offset?: number }
+  | { type: "springs"; value: boolean }
+  | { type: "compare"; law?: string }
+  | { type: "open"; scene: string }
+  | { type: "open"; file: string }
   | { type: "seen"; frame: number }
   | { type: "control" };
+
+const COMPARED = 1; // flags of a frame
+const CONTACTS = 2;
+
+interface Header {
+  revision: number;
+  nodes: number;
+  first: number; // the two numbers that differ between topology and frame
+  second: number;
+}
 
 /** Reads a binary message. Throws an Error on anything that is not one. */
 export function decode(bytes: ArrayBuffer): Topology | Frame {
   if (bytes.byteLength < HEADER_BYTES) throw new Error("a message shorter than its header");
-  const head = new DataView(bytes);
-  if (head.getUint32(0, true) !== 0x57564e53) throw new Error("not a message of Sinew");
-  const version = head.getUint16(4, true);
+  const view = new DataView(bytes);
+  if (view.getUint32(0, true) !== 0x57564e53) throw new Error("not a message of Sinew");
+  const version = view.getUint16(4, true);
   if (version !== PROTOCOL) throw new Error(`protocol ${version}, this page knows ${PROTOCOL}`);
-  const kind = head.getUint16(6, true);
-  const revision = head.getUint32(8, true);
-  const nodes = head.getUint32(12, true);
-  const extra = head.getUint32(32, true);
-  const expected = HEADER_BYTES + (kind === 1 ? 12 * extra + 14 * nodes : 16 * nodes);
-  if ((kind !== 1 && kind !== 2) || bytes.byteLength !== expected) {
-    throw new Error("a message of the wrong length");
-  }
-  if (kind === 1) {
-    const rest = HEADER_BYTES + 12 * extra;
-    return {
-      kind: "topology",
-      revision,
-      triangles: new Uint32Array(bytes, HEADER_BYTES, 3 * extra),
-      rest: new Float32Array(bytes, rest, 3 * nodes),
-      region: new Uint8Array(bytes, rest + 12 * nodes, nodes),
-      pinned: new Uint8Array(bytes, rest + 13 * nodes, nodes),
-    };
-  }
+  const kind = view.getUint16(6, true);
+  const head: Header = {
+    revision: view.getUint32(8, true),
+    nodes: view.getUint32(12, true),
+    first: view.getUint32(32, true),
+    second: view.getUint32(36, true),
+  };
+  if (kind === 1) return topologyOf(bytes, head);
+  if (kind === 2) return frameOf(bytes, head, Number(view.getBigUint64(16, true)), view.getFloat64(24, true));
+  throw new Error("a message of an unknown kind");
+}
+
+function requireLength(bytes: ArrayBuffer, body: number): void {
+  if (bytes.byteLength !== HEADER_BYTES + body) throw new Error("a message of the wrong length");
+}
+
+function topologyOf(bytes: ArrayBuffer, head: Header): Topology {
+  const { revision, nodes, first: triangles, second: springs } = head;
+  requireLength(bytes, 12 * triangles + 8 * springs + 14 * nodes);
+  const rest = HEADER_BYTES + 12 * triangles;
+  const pairs = rest + 12 * nodes;
+  const region = pairs + 8 * springs;
+  return {
+    kind: "topology",
+    revision,
+    triangles: new Uint32Array(bytes, HEADER_BYTES, 3 * triangles),
+    springs: new Uint32Array(bytes, pairs, 2 * springs),
+    rest: new Float32Array(bytes, rest, 3 * nodes),
+    region: new Uint8Array(bytes, region, nodes),
+    pinned: new Uint8Array(bytes, region + nodes, nodes),
+  };
+}
+
+function frameOf(bytes: ArrayBuffer, head: Header, number: number, time: number): Frame {
+  const { revision, nodes, first: quantity, second: flags } = head;
+  const compared = (flags & COMPARED) !== 0;
+  const contacts = (flags & CONTACTS) !== 0;
+  requireLength(bytes, (16 + (compared ? 12 : 0) + (contacts ? 1 : 0)) * nodes);
+  const value = HEADER_BYTES + 12 * nodes;
+  const other = value + 4 * nodes;
   return {
     kind: "frame",
     revision,
-    number: Number(head.getBigUint64(16, true)),
-    time: head.getFloat64(24, true),
-    quantity: extra,
+    number,
+    time,
+    quantity,
     position: new Float32Array(bytes, HEADER_BYTES, 3 * nodes),
-    value: new Float32Array(bytes, HEADER_BYTES + 12 * nodes, nodes),
+    value: new Float32Array(bytes, value, nodes),
+    compared: compared ? new Float32Array(bytes, other, 3 * nodes) : null,
+    contact: contacts ? new Uint8Array(bytes, other + (compared ? 12 * nodes : 0), nodes) : null,
   };
 }
