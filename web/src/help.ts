@@ -15,6 +15,9 @@ export const KEYS: [string, string][] = [
   ["G", "Ground grid"],
   ["F", "Whole body in view"],
   ["P", "Panel"],
+  ["D", "Plots"],
+  ["E", "Save: picture, video, data, scene, state"],
+  ["O", "Scenes"],
   ["H or ?", "This help"],
 ];
 const GESTURES: [string, string][] = [
@@ -23,6 +26,8 @@ const GESTURES: [string, string][] = [
   ["Drag beside it", "Turn the view"],
   ["Wheel or two fingers", "Zoom"],
   ["Right button or two fingers", "Move the view"],
+  ["Drop files", "Open a scene with its meshes, or a mesh"],
+  ["Drag in a plot", "Zoom in; double click: all"],
 ];
 
 export class Help {
@@ -32,7 +37,7 @@ export class Help {
     const close = h("button", { type: "button", class: "text" }, "Close");
     const list = (entries: [string, string][]) =>
       h("dl", {}, ...entries.flatMap(([key, what]) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, what)]));
-    this.element = h("dialog", { id: "help", "aria-label": "Keys and gestures" },
+    this.element = h("dialog", { id: "help", "aria-label": "Keys and gestures", "data-key": "h" },
       h("h2", {}, "Keys"), list(KEYS), h("h2", {}, "Mouse and touch"), list(GESTURES), close);
     close.addEventListener("click", () => this.element.close());
     this.element.addEventListener("click", (e) => {

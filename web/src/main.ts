@@ -1,8 +1,9 @@
 // The page of sinew view: puts its parts together. docs/view.md says what it does.
 import * as THREE from "three";
+import { Around } from "./around";
 import { ColorBar, ScaleBar } from "./colorbar";
 import { Connection } from "./connection";
-import { download, h, iconButton, setIcon } from "./dom";
+import { h, iconButton, setIcon } from "./dom";
 import { digits, length } from "./format";
 import { Hands } from "./hands";
 import { Help } from "./help";
@@ -25,6 +26,7 @@ class App {
   private readonly scale = new ScaleBar();
   private readonly help = new Help();
   private readonly connection: Connection;
+  private readonly around: Around;
 
   private scene: SceneInfo | null = null;
   private status: Status | null = null;
@@ -42,19 +44,24 @@ class App {
   private readonly clock = h("span", { class: "clock" }, "0.00 s");
   private readonly speed = h("span", { class: "badge" }, "paused");
   private readonly limit = h("div", { id: "limit", role: "status" });
-  private readonly alert = h("div", { id: "alert", role: "alert" });
   private readonly role = h("button", { type: "button", class: "text", id: "take-control" }, "Take the controls");
   private readonly lost = h("div", { id: "lost", role: "status" }, "Connecting …");
   private readonly play = iconButton("play", "Run", "Space", () => this.togglePlay());
   private readonly colors = h("select", { id: "coloring", "aria-label": "Colour by", title: "Colour by (C)" });
   private readonly toggles = new Map<string, HTMLInputElement>();
   private readonly tools = new Map<string, HTMLButtonElement>();
-  private alertTimer: ReturnType<typeof setTimeout> | undefined;
   private errorsSeen = -1;
 
   constructor() {
     this.stage.scene.add(this.tissue.group);
     this.hands = new Hands(this.stage, this.tissue, document.querySelector("#labels")!, (c) => this.send(c));
+    this.around = new Around({
+      canvas: this.stage.canvas,
+      send: (c) => this.send(c),
+      picture: (done) => this.stage.picture(done),
+      draw: () => this.stage.changed(),
+      resized: () => this.resize(),
+    });
     this.layOut();
     this.connection = new Connection({
       text: (m) => this.hear(m),
@@ -83,6 +90,7 @@ class App {
       pulling: this.hands.pulling,
       pins: this.hands.pins,
       drawn: this.framesDrawn,
+      samples: this.around.plots.history.length,
       /** Where a surface node is on the page [px]. */
       onPage: (node: number) => {
         const p = this.tissue.point(node, new THREE.Vector3()).project(this.stage.camera);
@@ -120,17 +128,15 @@ class App {
       toggle("wireframe", "Wireframe", "W"), toggle("ghost", "Ghost", "U"),
       toggle("pins", "Pins", "N"), toggle("grid", "Grid", "G"));
     const corner = h("div", { id: "corner", role: "toolbar", "aria-label": "More" },
-      this.role,
+      this.role, ...this.around.buttons,
       iconButton("home", "Whole body in view", "F", () => this.stage.goHome()),
-      iconButton("camera", "Save a picture", "", () => this.savePicture()),
-      iconButton("file", "Save the scene with its values", "", () => void this.saveScene()),
       iconButton("help", "Help", "H", () => this.help.toggle()),
       iconButton("panel", "Panel", "P", () => this.togglePanel()));
     document.querySelector("#ui")!.append(
       h("header", {}, h("div", { class: "heading" }, this.title, this.lookFor, this.bar.element), corner),
       this.panel.element, view, this.scale.element,
       h("footer", {}, this.limit, transport),
-      this.alert, this.lost, this.help.element);
+      this.lost, this.help.element, ...this.around.elements);
     this.role.hidden = true;
     this.setTool("pull");
     if (innerWidth < 760) document.body.classList.add("no-panel");
@@ -144,6 +150,7 @@ class App {
   // ---- what the server says ----
 
   private hear(message: Text): void {
+    this.around.hear(message, performance.now());
     switch (message.type) {
       case "hello":
         this.protocolFault = message.protocol !== PROTOCOL;
@@ -213,13 +220,11 @@ class App {
     this.controls = this.hands.mayPull = false;
     this.hands.forget();
     this.panel.setEnabled(false);
+    this.around.disconnected();
   }
 
   private complain(message: string): void {
-    this.alert.textContent = message;
-    this.alert.classList.add("on");
-    clearTimeout(this.alertTimer);
-    this.alertTimer = setTimeout(() => this.alert.classList.remove("on"), 9000);
+    this.around.complain(message);
   }
 
   // ---- what the user does ----
@@ -263,16 +268,6 @@ class App {
     this.resize();
   }
 
-  private savePicture(): void {
-    this.stage.picture((png) => png && download(`${this.scene?.name ?? "sinew"}.png`, png));
-  }
-
-  private async saveScene(): Promise<void> {
-    const answer = await fetch(`/scene.toml${location.search}`);
-    if (answer.ok) download(`${this.scene?.name ?? "scene"}.toml`, await answer.blob());
-    else this.complain("The scene could not be had");
-  }
-
   private key(event: KeyboardEvent): void {
     const at = event.target as HTMLElement;
     if (event.ctrlKey || event.metaKey || event.altKey || at.closest("select, input:not([type=checkbox]):not([type=range])")) return;
@@ -291,13 +286,14 @@ class App {
       f: () => this.stage.goHome(),
       p: () => this.togglePanel(),
       h: () => this.help.toggle(),
-      "?": () => this.help.toggle(),
+      ...this.around.keys,
     };
-    const name = event.key.toLowerCase();
+    const name = event.key === "?" ? "h" : event.key.toLowerCase();
     // The space bar presses the button that has the focus, as everywhere.
     if (name === " " && at.closest("button, input[type=checkbox], summary")) return;
     const action = actions[name];
-    if (!action || (this.help.element.open && name !== "h" && name !== "?")) return;
+    const dialog = document.querySelector<HTMLElement>("dialog[open]"); // only its own key does anything
+    if (!action || (dialog && dialog.dataset.key !== name)) return;
     event.preventDefault();
     action();
   }
