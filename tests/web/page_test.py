@@ -3,9 +3,10 @@
     page_test.py unit      its parts, in node alone
     page_test.py built     web/dist/index.html is what web/src gives
     page_test.py view      the page in headless Chromium with `sinew view` behind it
+    page_test.py data      plots, downloads, gallery and dropped files, in the same way
     page_test.py server    losing and finding the server again, tokens, frames a second and latency
 
-Without node 18 or what `./dev web` fetches, and for the last two without Chromium, a test is
+Without node 18 or what `./dev web` fetches, and for the last three without Chromium, a test is
 skipped (exit code 77) and says what is missing; with SINEW_WEB=required it fails.
 """
 
@@ -32,7 +33,7 @@ def missing(name):
     if not (WEB / "node_modules" / ".installed").exists():
         return "what the page is built from: ./dev web"
     has_browser = os.environ.get("SINEW_CHROMIUM") or any(map(shutil.which, CHROMIUMS))
-    if name in ("view", "server") and not has_browser:
+    if name not in ("unit", "built") and not has_browser:
         return "Chromium: ./dev setup browser, or name one by SINEW_CHROMIUM"
     return None
 

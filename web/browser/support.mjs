@@ -13,15 +13,17 @@ mkdirSync(pictures, { recursive: true });
 
 const browsers = [process.env.SINEW_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 
-/** Starts sinew view and gives its address; `stop` ends it by Ctrl-C and gives the exit code. */
+/** Starts sinew view and gives its address; `stop` ends it by Ctrl-C and gives the exit code. Without
+ * a scene (null) it begins with the gallery. */
 export async function serve(scene, { port = 0, host } = {}) {
-  const child = spawn(sinew, ["view", join(root, scene), "--port", String(port), ...(host ? ["--host", host] : [])], { stdio: ["ignore", "pipe", "inherit"] });
+  const child = spawn(sinew, ["view", ...(scene ? [join(root, scene)] : []), "--port", String(port), ...(host ? ["--host", host] : [])], { cwd: root, stdio: ["ignore", "pipe", "inherit"] });
   const url = await new Promise((found, failed) => {
     let text = "";
     child.stdout.on("data", (part) => {
       text += part;
       if (text.includes("\n")) found(text.split("\n")[0]);
     });
+    child.on("error", failed);
     child.on("exit", (code) => failed(new Error(`sinew view ended with ${code}`)));
   });
   const ended = new Promise((done) => child.on("exit", done));

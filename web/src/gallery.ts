@@ -80,6 +80,7 @@ export class Gallery {
       if (!answer.ok) throw new Error(`${answer.status} ${(await answer.text()).trim()}`);
       const entries = (await answer.json()) as Entry[];
       this.cards.replaceChildren(...entries.map((entry) => this.card(entry)));
+      if (entries.length === 0) this.cards.append(h("p", { class: "loading" }, "No scenes are installed with this Sinew."));
     } catch (error) {
       this.asked = false; // once more when it is opened again
       this.cards.replaceChildren(h("p", { class: "loading" }, `The list of scenes could not be had: ${error instanceof Error ? error.message : error}`));

@@ -31,13 +31,13 @@ export function columnsOf(scene: SceneInfo): Column[] {
       group: "energy", title: "Total", unit: "J",
       of: ({ energy: e }) => e.kinetic + e.elastic + e.gravity + e.contact + e.dissipated - e.work_in,
     },
-    ...scene.probes.map(({ name }, i): Column => ({
+    ...scene.probes.map((name, i): Column => ({
       group: "displacement", title: name, unit: "m", of: (s) => (s.probes[i] ? size(s.probes[i]) : null),
     })),
     { group: "volume", title: "Change of volume", unit: "%", of: (s) => 100 * (s.volume_ratio - 1) },
     { group: "force", title: "Pull", unit: "N", of: (s) => { const h = hand(s); return h ? size(h.force) : null; } },
     { group: "force", title: "Pins", unit: "N", of: (s) => (pins(s).length > 0 ? pins(s).reduce((sum, h) => sum + size(h.force), 0) : null) },
-    { group: "force", title: "Ball", unit: "N", of: (s) => (s.ball ? size(s.ball.force) : null) },
+    { group: "force", title: "Ball in hand", unit: "N", of: (s) => (s.ball ? size(s.ball.force) : null) },
     ...scene.obstacles.map(({ name }, i): Column => ({
       group: "force", title: name, unit: "N", of: (s) => (s.obstacles[i] ? size(s.obstacles[i].force) : null),
     })),

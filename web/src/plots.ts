@@ -23,6 +23,8 @@ const GROUPS: Group[] = [
 const COLORS = ["#56b4e9", "#e69f00", "#2fbf8f", "#f0e442", "#e8684a", "#d58abb", "#a4a9ff", "#c9b18f"];
 const TOTAL = "#ffffff";
 const BETWEEN = 95; // pictures [ms]
+const NARROW = 760; // [px], as in the style sheets
+const LEAST = 1e-9; // less is said to be nothing [J, N, m]
 
 export class Plots {
   readonly element: HTMLElement;
@@ -70,6 +72,7 @@ export class Plots {
     this.element.hidden = !open;
     this.button.setAttribute("aria-expanded", String(open));
     document.body.classList.toggle("plots", open);
+    if (open && innerWidth < NARROW) document.body.classList.add("no-panel"); // no room for both
     if (open) this.build();
     else this.close();
     if (!open && inside) this.button.focus();
@@ -189,7 +192,7 @@ export class Plots {
     this.legend.querySelectorAll("output").forEach((output, i) => {
       const value = columns[i]?.values[index] ?? null;
       const { unit } = this.group;
-      output.value = value === null ? "–" : unit === "%" ? `${digits(value)} %` : si(value, unit);
+      output.value = value === null ? "–" : unit === "%" ? `${digits(value)} %` : si(Math.abs(value) < LEAST ? 0 : value, unit);
     });
     const texts = [...this.legend.querySelectorAll("button")].map((b) => `${b.children[1].textContent} ${b.children[2].textContent}`);
     this.area.setAttribute("aria-label", `${this.group.title} over time, ${this.when.textContent}: ${texts.join(", ")}. Arrow keys read, + and − zoom, 0 shows all.`);

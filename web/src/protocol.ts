@@ -56,7 +56,7 @@ export interface SceneInfo {
   regions: string[];
   quantities: QuantityInfo[];
   ground: { point: Vec; normal: Vec } | null;
-  probes: { name: string }[];
+  probes: string[]; // their names
   obstacles: ObstacleInfo[];
   laws: { name: string; title: string }[]; // that a second body may have
   compare: string; // the law of the second body; empty without one

@@ -26,7 +26,7 @@ const GRID_FRAGMENT = `
   void main() {
     vec2 at = vec2(dot(place - middle, across), dot(place - middle, along)) / cell;
     float fade = 1.0 - smoothstep(0.25, 1.0, length(place - middle) / reach);
-    float strength = max(0.22 * lines(at), 0.5 * lines(at / 10.0));
+    float strength = max(0.13 * lines(at), 0.3 * lines(at / 10.0));
     gl_FragColor = vec4(vec3(0.72, 0.8, 0.88), strength * fade);
     if (gl_FragColor.a < 0.004) discard;
   }`;
@@ -70,7 +70,9 @@ export class Stage {
     rim.position.set(-2, 1.2, -2.5);
     this.scene.add(this.sun, this.sun.target, rim, new THREE.HemisphereLight(0xcfe0f2, 0x3a322d, 0.55));
 
-    this.floor = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), new THREE.ShadowMaterial({ opacity: 0.42 }));
+    // It lies in the plane of the grid, which must not be lost behind it.
+    const shade = new THREE.ShadowMaterial({ opacity: 0.42, depthWrite: false });
+    this.floor = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), shade);
     this.floor.receiveShadow = true;
     this.grid = new THREE.Mesh(
       new THREE.PlaneGeometry(1, 1),

@@ -3,7 +3,7 @@ import { columnsOf, History, toCsv } from "../src/history";
 import type { SceneInfo, Status } from "../src/protocol";
 
 const scene = (opened = 1) =>
-  ({ opened, name: "beam", probes: [{ name: 'tip, "left"' }], obstacles: [{ name: "plate", radius: 0.1 }] }) as SceneInfo;
+  ({ opened, name: "beam", probes: ['tip, "left"'], obstacles: [{ name: "plate", radius: 0.1 }] }) as SceneInfo;
 const status = (time: number, kinetic = 0) =>
   ({
     time,
@@ -25,7 +25,7 @@ describe("the history", () => {
     expect(column(h, 'tip, "left"')[0]).toBeCloseTo(0.005);
     expect(column(h, "Change of volume")[0]).toBeCloseTo(-1);
     expect(column(h, "plate")).toEqual([2]);
-    expect(column(h, "Ball")).toEqual([null]);
+    expect(column(h, "Ball in hand")).toEqual([null]);
     expect(new Set(columnsOf(scene()).map((c) => c.group))).toEqual(new Set(["energy", "displacement", "volume", "force"]));
   });
 
@@ -75,7 +75,7 @@ describe("the table", () => {
     expect(head).toMatch(/^time \[s\],Kinetic \[J\],/);
     expect(head).toContain(',"displacement of tip, ""left"" [m]",');
     expect(head).toContain(",Change of volume [%],");
-    expect(head).toMatch(/,force: Ball \[N\],force: plate \[N\]$/);
+    expect(head).toMatch(/,force: Ball in hand \[N\],force: plate \[N\]$/);
     expect(row).toMatch(/^0\.25,0,2,-3,/);
     expect(row).toMatch(/,,,,2$/);
     expect(end).toBe("");
