@@ -47,7 +47,7 @@ _sinew() {
       return
       ;;
     identify:--young | identify:--poisson | identify:--density | identify:--damping-ratio) return ;;
-    bench:--json | bench:--peer)
+    bench:--json | bench:--peer | view:--scenes)
       _sinew_files '*'
       return
       ;;
@@ -55,8 +55,8 @@ _sinew() {
   esac
   case ${COMP_WORDS[1]}:$cur in
     run:-*) _sinew_words "-o --out --set --force --no-output --json -q --quiet --threads --help" ;;
-    view:-*) _sinew_words "--port --open --host --set -q --quiet --threads --help" ;;
-    view:*) _sinew_files toml ;;
+    view:-*) _sinew_words "--scenes --port --open --host --set -q --quiet --threads --help" ;;
+    view:*) _sinew_files toml "${meshes[@]}" ;;
     resume:-*) _sinew_words "--json -q --quiet --threads --help" ;;
     info:-*) _sinew_words "--scale --json --help" ;;
     convert:-*) _sinew_words "--scale --repair --format --force --help" ;;

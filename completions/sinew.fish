@@ -26,6 +26,7 @@ complete -c sinew -n $run -l no-output -d 'Write no folder'
 
 set -l view '__fish_seen_subcommand_from view'
 complete -c sinew -n $view -a '(__fish_complete_suffix .toml)'
+complete -c sinew -n $view -l scenes -r -d 'Folder of the gallery'
 complete -c sinew -n $view -l port -x -d 'Port to serve the page at'
 complete -c sinew -n $view -l host -x -d 'Address to serve at'
 complete -c sinew -n $view -l open -d 'Open the page in the browser'

@@ -44,14 +44,15 @@ _sinew() {
             '1:folder:_files -/'
           ;;
         view)
-          _arguments '--port[Port to serve the page at]:port:' \
+          _arguments '--scenes[Folder of the gallery]:folder:_files -/' \
+            '--port[Port to serve the page at]:port:' \
             '--host[Address to serve at]:address:' \
             '--open[Open the page in the browser]' \
             '*--set[Override a value]:KEY=VALUE:' \
             '(-q --quiet)'{-q,--quiet}'[Print the address and errors only]' \
             '--threads[Threads to use]:count:' \
             '--help[Show help]' \
-            '1:scene:_files -g "*.toml(-.)"'
+            '1:scene:_files -g "(*.toml|$meshes)(-.)"'
           ;;
         info)
           _arguments '--scale[Factor from the unit of the file to metres]:factor:' \

@@ -59,6 +59,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   server::host_allowed({"127.0.0.1", 8650, ""}, text);
   server::origin_allowed(text, "localhost:8650");
   server::token_allowed(door, text);
+  server::query_value(text, "name");
   std::unique_ptr<live::Simulation> simulation;
   for (int messages = 0; messages < 8 && !text.empty(); ++messages) {
     const std::size_t end = std::min(text.find('\n'), text.size());

@@ -12,7 +12,7 @@
 #include "commands.h"
 #include "sinew/base/parallel.h"
 #include "sinew/io/file_io.h"
-#include "sinew/study/law.h"
+#include "sinew/scene/laws.h"
 
 using namespace sinew;
 namespace fs = std::filesystem;
@@ -106,7 +106,7 @@ void add_validate(CLI::App& app, int& status) {
   CLI::App* command =
       app.add_subcommand("validate", "Compare the laws with reference values, case by case");
   std::vector<std::string> laws;
-  for (const study::StudyLaw& law : study::study_laws()) laws.push_back(law.name);
+  for (const LawChoice& law : law_choices()) laws.push_back(law.name);
   command->add_option("CASE", a->cases, "Names of cases; default all");
   command->add_option("--dir", a->dir, "Folder of the cases")->capture_default_str();
   command->add_option("--law", a->laws, "Only this law; may be given more than once")

@@ -7,12 +7,14 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <thread>
 
 #include "commands.h"
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
+#include "sinew/scene/around.h"
 #include "sinew/server/server.h"
 
 using namespace sinew;
@@ -23,13 +25,19 @@ constexpr const char* kFooter = R"(
 The page needs no internet: it is part of this program. Whoever opens the address first has the
 controls, others watch. Ctrl-C ends it.
 
+Without a scene the page begins with the gallery of those that come with Sinew. A mesh alone is shown
+as soft tissue that hangs from its top. Scenes and meshes can be dropped on the page, too.
+
 Examples:
+  sinew view
   sinew view scenes/liver.toml
+  sinew view organ.vtu
   sinew view scenes/liver.toml --set liver.young=20e3 --open
   sinew view scenes/beam.toml --host 0.0.0.0     for other machines, with the printed token)";
 
 struct Arguments {
-  std::string scene;
+  std::string scene;   // empty: the gallery
+  std::string scenes;  // its folder; empty: where it usually is
   std::vector<std::string> set;
   std::string host = "127.0.0.1";
   int port = 8650;
@@ -97,6 +105,28 @@ void open_browser(std::string url) {
   posix_spawn_file_actions_destroy(&quiet);
 }
 
+// The folder of the shipped scenes: below the working directory, in the source tree that the
+// program was built in, or installed beside it.
+std::filesystem::path find_scenes() {
+  std::error_code ignored;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
+  for (const std::filesystem::path& place :
+       {std::filesystem::path("scenes"), program / "../../scenes",
+        program / "../share/sinew/scenes"}) {
+    if (std::filesystem::is_regular_file(place / "liver.toml", ignored)) return place;
+  }
+  return {};
+}
+
+// What is behind the gallery until one has chosen.
+std::string first_scene(const std::filesystem::path& scenes) {
+  const std::filesystem::path file = scenes / "liver.toml";
+  std::error_code ignored;
+  if (!scenes.empty() && std::filesystem::is_regular_file(file, ignored)) return file.string();
+  throw Error(ErrorKind::usage, "there is no gallery here to begin with",
+              "name a scene: sinew view scenes/liver.toml, or the folder: --scenes DIR");
+}
+
 int view(const Arguments& a) {
   const sigset_t signals = end_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
@@ -105,7 +135,10 @@ int view(const Arguments& a) {
   options.host = a.host;
   options.port = static_cast<unsigned short>(a.port);
   if (!server::is_loopback(a.host)) options.token = server::make_token();
-  server::Server server(options, load_scene(a.scene, a.set));
+  options.scenes = a.scenes.empty() ? find_scenes() : std::filesystem::path(a.scenes);
+  options.gallery = a.scene.empty();
+  const std::string scene = a.scene.empty() ? first_scene(options.scenes) : a.scene;
+  server::Server server(options, load_scene_or_mesh(scene, a.set));
   const StopOnSignal stop(server);
   fmt::print("{}\n", server.url());
   if (!a.quiet) fmt::print("Open it in a browser. Ctrl-C ends.\n");
@@ -121,7 +154,10 @@ void add_view(CLI::App& app, int& status) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command =
       app.add_subcommand("view", "Show a scene live in the browser: watch it, pull it, change it");
-  command->add_option("SCENE", a->scene, "Scene file (TOML)")->required();
+  command->add_option("SCENE", a->scene, "Scene file (TOML) or mesh; none: the gallery");
+  command->add_option("--scenes", a->scenes, "Folder of the gallery's scenes")
+      ->type_name("DIR")
+      ->default_str("those that come with Sinew");
   command->add_option("--port", a->port, "Port to serve the page at; 0 for any that is free")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();

@@ -41,6 +41,15 @@ const std::vector<std::string> good = {
     R"({"type":"release","hand":1})",
     R"({"type":"seen","frame":12})",
     R"({"type":"control"})",
+    R"({"type":"ball","point":[0,1,2],"radius":0.02})",
+    R"({"type":"ball"})",
+    R"({"type":"cut","normal":[1,0,0],"offset":0.1})",
+    R"({"type":"cut"})",
+    R"({"type":"springs","value":true})",
+    R"({"type":"compare","law":"fem"})",
+    R"({"type":"compare"})",
+    R"({"type":"open","scene":"liver"})",
+    R"({"type":"open","file":"a.mesh"})",
 };
 
 TEST(Protocol, MessagesAreRead) {
@@ -56,6 +65,13 @@ TEST(Protocol, MessagesAreRead) {
   EXPECT_EQ(command<live::Grab>(good[10]).node, 7);
   EXPECT_EQ(command<live::Grab>(good[10]).point, Vec3(0, 1, 2));
   EXPECT_EQ(std::get<Seen>(parse_request(good[13])).frame, 12u);
+  EXPECT_EQ(command<live::MoveBall>(good[15]).radius, 0.02);
+  EXPECT_NO_THROW(command<live::RemoveBall>(good[16]));
+  EXPECT_EQ(command<live::SetCut>(good[17]).cut.offset, 0.1);
+  EXPECT_TRUE(command<live::SetCut>(good[18]).cut.normal.isZero());
+  EXPECT_TRUE(command<live::SetSprings>(good[19]).shown);
+  EXPECT_EQ(command<live::SetCompare>(good[20]).law, "fem");
+  EXPECT_EQ(std::get<Open>(parse_request(good[22])).scene, "liver");
 }
 
 TEST(Protocol, EverythingElseIsRefused) {
@@ -84,6 +100,12 @@ TEST(Protocol, EverythingElseIsRefused) {
                                  R"({"type":"grab","hand":0,"node":1e300,"point":[0,0,0]})",
                                  R"({"type":"time_scale","value":"fast"})",
                                  R"({"type":"seen","frame":-1})",
+                                 R"({"type":"ball","point":[0,1]})",
+                                 R"({"type":"cut","normal":1})",
+                                 R"({"type":"springs"})",
+                                 R"({"type":"compare","law":7})",
+                                 R"({"type":"open"})",
+                                 R"({"type":"open","scene":"a","file":"b"})",
                                  "{\"type\":\"\xff\xfe\"}"}) {
     EXPECT_THROW(parse_request(text), Error) << text;
   }
@@ -148,6 +170,25 @@ TEST(Protocol, BinaryMessagesAreLaidOutAsWritten) {
   EXPECT_EQ(at<double>(frame, 24), f.time);
   EXPECT_EQ(frame.size(), 40 + 16 * t.node.size());
   EXPECT_EQ(at<float>(frame, 40), f.position[0]);
+  EXPECT_EQ(at<std::uint32_t>(frame, 36), 0u);
+
+  s.apply(live::SetSprings{true});
+  s.apply(live::SetCompare{"lloyd"});
+  s.apply(live::MoveBall{Vec3(0.05, 0, 0), 0.03});
+  for (int i = 0; i < 10; ++i) s.advance(Clock::time_point::max());
+  const std::string all = encode_topology(*s.topology());
+  const std::size_t springs = s.topology()->spring.size();
+  const std::size_t triangles = s.topology()->triangle.size();
+  EXPECT_EQ(at<std::uint32_t>(all, 36), springs / 2);
+  EXPECT_EQ(all.size(), 40 + 4 * triangles + 4 * springs + 14 * 64);
+  EXPECT_EQ(at<std::uint32_t>(all, 40 + 4 * triangles + 12 * 64), s.topology()->spring[0]);
+  const live::Frame both = s.frame();
+  ASSERT_FALSE(both.contact.empty());
+  const std::string more = encode_frame(both);
+  EXPECT_EQ(at<std::uint32_t>(more, 36), 3u);
+  EXPECT_EQ(more.size(), 40 + (16 + 12 + 1) * 64u);
+  EXPECT_EQ(at<float>(more, 40 + 16 * 64), both.compared[0]);
+  EXPECT_EQ(static_cast<std::uint8_t>(more.back()), both.contact.back());
 }
 
 TEST(Protocol, TextsAreJsonWhateverTheyHold) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sinew/base/error.h"
+#include "sinew/server/protocol.h"
 #include "tests/live/support.h"
 #include "tests/server/client.h"
 
@@ -93,7 +94,7 @@ TEST_F(ServerTest, TellsWhatThereIsThenStreamsFramesWhileItRuns) {
   ASSERT_NE(c.shake().find("101"), std::string::npos);
   const auto hello = c.hear_text("");
   ASSERT_TRUE(hello);
-  EXPECT_EQ(nlohmann::json::parse(*hello)["protocol"], 1);
+  EXPECT_EQ(nlohmann::json::parse(*hello)["protocol"], protocol_version);
   const auto scene = c.hear_text("\"scene\"");
   ASSERT_TRUE(scene);
   EXPECT_EQ(nlohmann::json::parse(*scene)["nodes"], 64);
@@ -252,6 +253,102 @@ TEST_F(ServerTest, StopsWhileBrowsersAreThere) {
   ASSERT_TRUE(silent.connected());
   stop();
   EXPECT_TRUE(c.is_closed());
+}
+
+// The ticket of the viewer that has the controls.
+std::string ticket_of(Client& c) {
+  c.shake();
+  const auto role = c.hear_text("\"controls\":true");
+  return role ? nlohmann::json::parse(*role)["ticket"].get<std::string>() : "";
+}
+
+std::string give(unsigned short port, const std::string& query, const std::string& body,
+                 const std::string& more = "") {
+  Client c(port);
+  c.send("POST /files?" + query + " HTTP/1.1\r\nHost: " + c.own_host() + "\r\nContent-Length: " +
+         std::to_string(body.size()) + "\r\nConnection: close\r\n" + more + "\r\n" + body);
+  return c.read_all();
+}
+
+TEST_F(ServerTest, ScenesOfTheGalleryAreOpened) {
+  stop();
+  Options options;
+  options.scenes = std::string(SINEW_SOURCE_DIR) + "/scenes";
+  start(options);
+  const std::string list = Client(port()).get("/gallery.json");
+  const auto scenes = nlohmann::json::parse(list.substr(list.find("\r\n\r\n") + 4));
+  EXPECT_GE(scenes.size(), 10u);
+  EXPECT_NE(Client(port()).get("/gallery/../liver.toml").find("404"), std::string::npos);
+  Client c(port());
+  c.shake();
+  c.say(R"({"type":"open","scene":"beam"})");
+  ASSERT_TRUE(c.hear_text("\"opened\":2"));
+  c.say(R"({"type":"open","scene":"../liver"})");
+  EXPECT_TRUE(c.hear_text("no such scene"));
+}
+
+TEST_F(ServerTest, FilesOfTheViewerWithTheControlsAreOpened) {
+  Client c(port());
+  const std::string ticket = ticket_of(c);
+  ASSERT_EQ(ticket.size(), 32u);
+  const std::string scene =
+      "[body.a]\nshape = \"box\"\ncells = [1, 1, 1]\n[pin.p]\nselect = {side = \"+y\"}\n";
+  EXPECT_NE(give(port(), "name=a.toml&ticket=" + ticket, scene).find(" 200 "), std::string::npos);
+  c.say(R"({"type":"open","file":"a.toml"})");
+  ASSERT_TRUE(c.hear_text("\"opened\":2"));
+  // A tetrahedron as a mesh alone.
+  const std::string mesh =
+      "MeshVersionFormatted 2\nDimension 3\nVertices 4\n0 0 0 0\n1 0 0 0\n0 1 0 0\n0 0 1 0\n"
+      "Tetrahedra 1\n1 2 3 4 0\nEnd\n";
+  EXPECT_NE(give(port(), "name=t.mesh&ticket=" + ticket, mesh).find(" 200 "), std::string::npos);
+  c.say(R"({"type":"open","file":"t.mesh"})");
+  ASSERT_TRUE(c.hear_text("\"opened\":3"));
+  // What cannot be read is said as on the command line, and the scene stays.
+  EXPECT_NE(give(port(), "name=bad.toml&ticket=" + ticket, "[body.a\nx").find(" 200 "),
+            std::string::npos);
+  c.say(R"({"type":"open","file":"bad.toml"})");
+  const auto status = c.hear_text("bad.toml:1");
+  ASSERT_TRUE(status);
+  c.say(R"({"type":"open","file":"nothing.toml"})");
+  EXPECT_TRUE(c.hear_text("no such file"));
+  expect_alive();
+}
+
+TEST_F(ServerTest, OtherFilesAreKeptOut) {
+  Client c(port());
+  const std::string ticket = ticket_of(c);
+  EXPECT_NE(give(port(), "name=a.toml&ticket=0", "x").find(" 403 "), std::string::npos);
+  EXPECT_NE(give(port(), "name=a.toml", "x").find(" 403 "), std::string::npos);
+  EXPECT_NE(give(port(), "name=a.toml&ticket=" + ticket, "x", "Origin: http://evil.example\r\n")
+                .find(" 403 "),
+            std::string::npos);
+  for (const char* name :
+       {"", "..", "../a.toml", "a%2fb.toml", ".toml", "a.exe", "a.toml/", "toml"}) {
+    EXPECT_NE(give(port(), "ticket=" + ticket + "&name=" + name, "x").find(" 400 "),
+              std::string::npos)
+        << name;
+  }
+  Client large(port());
+  large.send("POST /files?name=a.toml&ticket=" + ticket + " HTTP/1.1\r\nHost: " + large.own_host() +
+             "\r\nContent-Length: 99999999999\r\n\r\n");
+  EXPECT_NE(large.read_until("\r\n").find(" 413 "), std::string::npos);
+  {
+    std::vector<std::unique_ptr<Client>> half;  // files that never end
+    for (int i = 0; i < 4; ++i) {
+      half.push_back(std::make_unique<Client>(port()));
+      half.back()->send("POST /files?name=a.toml&ticket=" + ticket + " HTTP/1.1\r\nHost: " +
+                        half.back()->own_host() + "\r\nContent-Length: 1000\r\n\r\nabc");
+    }
+    EXPECT_NE(half.back()->read_until("\r\n").find(" 503 "), std::string::npos);
+  }
+  expect_alive();
+}
+
+TEST_F(ServerTest, TheStateIsAFile) {
+  const std::string answer = Client(port()).get("/state.vtu");
+  EXPECT_EQ(answer.find("HTTP/1.1 200"), 0u);
+  EXPECT_NE(answer.find("<VTKFile"), std::string::npos);
+  EXPECT_NE(answer.find("</VTKFile>"), std::string::npos);
 }
 
 TEST_F(ServerTest, APortThatIsTakenIsSaid) {

@@ -22,8 +22,8 @@ std::string kind(const std::optional<Outgoing>& out) {
 TEST(Viewer, DescribesTheSceneBeforeItsFrames) {
   live::Simulation s(test::hanging_box());
   const live::Snapshot now = snapshot_of(s);
-  Viewer viewer("1");
-  viewer.note(role_text(true, 1));
+  Viewer viewer("1", false);
+  viewer.note(role_text(true, 1, "t"));
   for (const char* expected :
        {"hello", "role", "scene", "topology", "status", "frame", "nothing"}) {
     EXPECT_EQ(kind(viewer.next(now)), expected);
@@ -33,7 +33,7 @@ TEST(Viewer, DescribesTheSceneBeforeItsFrames) {
 TEST(Viewer, OneThatFallsBehindGetsTheNewestFrameAndNoQueue) {
   live::Simulation s(test::hanging_box());
   live::Snapshot now = snapshot_of(s);
-  Viewer viewer("1");
+  Viewer viewer("1", false);
   while (viewer.next(now)) {
   }
   int frames = 0;
@@ -51,7 +51,7 @@ TEST(Viewer, OneThatFallsBehindGetsTheNewestFrameAndNoQueue) {
 TEST(Viewer, AnotherSceneIsDescribedAnew) {
   live::Simulation s(test::hanging_box());
   live::Snapshot now = snapshot_of(s);
-  Viewer viewer("1");
+  Viewer viewer("1", false);
   while (viewer.next(now)) {
   }
   s.apply(live::Load{test::hanging_box({"box.cells=[2,2,2]"})});
@@ -63,7 +63,7 @@ TEST(Viewer, AnotherSceneIsDescribedAnew) {
 TEST(Viewer, NotesAreBoundedAndSoIsSpeech) {
   live::Simulation s(test::hanging_box());
   const live::Snapshot now = snapshot_of(s);
-  Viewer viewer("1");
+  Viewer viewer("1", false);
   for (int i = 0; i < 1000; ++i) viewer.note(error_text(std::to_string(i)));
   int notes = 0;
   while (const auto out = viewer.next(now)) notes += kind(out) == "error" ? 1 : 0;

@@ -1,4 +1,5 @@
 #include "sinew/solver/implicit.h"
+#include "sinew/forces/obstacles.h"
 
 #include <gtest/gtest.h>
 
@@ -181,6 +182,25 @@ TEST(Implicit, EnergyAccountBalancesUpToTheScheme) {
   const double fine = drift(400);
   EXPECT_LT(fine, 0.3 * coarse);
   EXPECT_LT(fine, 0.05);
+}
+
+// A ball that is pressed in and stands still: its work is in the body or has become heat.
+TEST(Implicit, TheWorkOfAnObstacleIsInTheEnergyAccount) {
+  Material material;
+  material.young = 2e4;
+  material.damping_ratio = 0.2;
+  Model m = tissue_box(material, {3, 3, 3});
+  m.pins.push_back({"top", test::nodes_at(m, 1, 0.05), {}});
+  m.gravity = Vec3::Zero();
+  Path path;
+  path.keys = {{0.0, Vec3::Zero()}, {0.2, Vec3(0, 0.012, 0)}};
+  add_obstacle(m, {"ball", Vec3(0, -0.085, 0), 0.035, 1e7, path});
+  finish(m);
+  const State s = run(m, 0.001, 300, Scheme::sdirk2);  // backward Euler loses energy by itself
+  Workspace workspace(m);
+  const Energies e = measure_energies(m, s, workspace);
+  EXPECT_GT(e.work_in, 1e-5);
+  EXPECT_NEAR(e.total(), 0.0, 0.03 * e.work_in);
 }
 
 TEST(Implicit, SameBitsAtAnyThreadCount) {

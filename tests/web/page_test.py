@@ -3,7 +3,8 @@
     page_test.py unit      its parts, in node alone
     page_test.py built     web/dist/index.html is what web/src gives
     page_test.py view      the page in headless Chromium with `sinew view` behind it
-    page_test.py data      plots, downloads, gallery and dropped files, in the same way
+    page_test.py tools     ball, obstacles, contacts, springs, cut, comparison of laws
+    page_test.py data      plots, downloads, gallery and dropped files
     page_test.py server    losing and finding the server again, tokens, frames a second and latency
 
 Without node 18 or what `./dev web` fetches, and for the last three without Chromium, a test is

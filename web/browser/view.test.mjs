@@ -2,7 +2,7 @@
 import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
-import { launch, picture, serve, state, until, visit } from "./support.mjs";
+import { launch, nodeInFront, picture, serve, state, until, visit } from "./support.mjs";
 
 let browser, server;
 before(async () => {
@@ -24,20 +24,6 @@ const reset = async (page) => {
   await page.keyboard.press("r");
   await until(page, () => window.sinew.state.status.time === 0 && window.sinew.state.time === 0);
 };
-
-/** The surface node in the middle of the picture that is nearest to the viewer, and its place. */
-const nodeInFront = (page) =>
-  page.evaluate(() => {
-    const { positions, camera, onPage } = window.sinew.state;
-    let best = 0, least = Infinity;
-    for (let n = 0; n < positions.length / 3; ++n) {
-      const [x, y] = onPage(n);
-      const d = Math.hypot(...camera.map((c, i) => c - positions[3 * n + i]));
-      const score = d * (1 + Math.hypot(x / innerWidth - 0.4, y / innerHeight - 0.5));
-      if (score < least) [best, least] = [n, score];
-    }
-    return { node: best, at: onPage(best) };
-  });
 
 test("loads, runs, pauses and steps by key", () =>
   visit(browser, server.url, { width: 1280, height: 720 }, async (page) => {

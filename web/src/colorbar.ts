@@ -3,15 +3,17 @@ import { categories, diverging, sequential } from "./colors";
 import { h } from "./dom";
 import { quantity } from "./format";
 import type { SceneInfo } from "./protocol";
+import type { Range } from "./range";
 
 export class ColorBar {
   readonly element = h("div", { id: "colorbar", role: "img" });
   private shown = "";
 
   /** `index` into the scene's quantities, -1: nothing to show. */
-  show(scene: SceneInfo | null, index: number, top: number): void {
+  show(scene: SceneInfo | null, index: number, range: Range): void {
+    const { top, above, below } = range;
     const info = scene?.quantities[index];
-    const key = JSON.stringify([info?.name, top, scene?.regions]);
+    const key = JSON.stringify([info?.name, top, above, below, scene?.regions]);
     if (key === this.shown) return;
     this.shown = key;
     this.element.hidden = !info;
@@ -29,6 +31,9 @@ export class ColorBar {
     }
     const shares = info.signed ? [1, 0.5, 0, -0.5, -1] : [1, 0.75, 0.5, 0.25, 0];
     const texts = shares.map((s) => (info.signed && s > 0 ? "+" : "") + quantity(s * top, info.unit));
+    // Stray values may be out of the bar: its ends say so.
+    if (above) texts[0] = `≥ ${texts[0]}`;
+    if (below && info.signed) texts[4] = `≤ ${texts[4]}`;
     this.element.className = "bar";
     this.element.replaceChildren(
       h("div", { class: "title" }, info.title),

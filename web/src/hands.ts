@@ -1,35 +1,36 @@
 // Pulling and pinning: the pointer on the tissue becomes a hand of the protocol.
 import * as THREE from "three";
 import { si } from "./format";
+import { Label } from "./labels";
+import type { Picker } from "./picker";
 import type { Command, HandInfo, Vec } from "./protocol";
 import type { Stage } from "./stage";
 import type { Tissue } from "./tissue";
-
-export type Tool = "pull" | "pin";
 
 const PULLING = 0; // the hand of the pointer; those from 1 on are pins
 const MOST_HANDS = 16;
 
 interface Held {
-  node: number;
+  node: number; // -1: a cut has taken it out of sight
+  rest: THREE.Vector3; // of the node: by that it is found again
   target: THREE.Vector3;
   arrow: THREE.Group;
-  label: HTMLElement;
+  label: Label;
 }
 
 export class Hands {
-  tool: Tool = "pull";
+  tool: "pull" | "pin" | null = "pull"; // null: the pointer is another tool
   mayPull = false; // this browser has the controls
   readonly held = new Map<number, Held>();
-  private readonly ray = new THREE.Raycaster();
   private readonly plane = new THREE.Plane();
   private pointer = -1; // that pulls
   private moved = false; // since the last frame
-  private forces = new Map<number, number>();
+  private known = new Map<number, HandInfo>();
 
   constructor(
     private readonly stage: Stage,
     private readonly tissue: Tissue,
+    private readonly picker: Picker,
     private readonly labels: HTMLElement,
     private readonly send: (command: Command) => boolean,
   ) {
@@ -41,9 +42,14 @@ export class Hands {
     }
   }
 
-  /** Forces as the simulation knows them. */
+  /** Hands as the simulation knows them. */
   hear(hands: HandInfo[]): void {
-    this.forces = new Map(hands.map((h) => [h.hand, Math.hypot(...h.force)]));
+    this.known = new Map(hands.map((h) => [h.hand, h]));
+  }
+
+  /** Nodes have other numbers: what is held stays held. */
+  renumber(): void {
+    for (const held of this.held.values()) held.node = this.tissue.nodeAtRest(held.rest);
   }
 
   releaseAll(): void {
@@ -71,34 +77,19 @@ export class Hands {
     this.moved = false;
     const from = new THREE.Vector3();
     for (const [hand, held] of this.held) {
-      this.tissue.point(held.node, from);
+      const known = this.known.get(hand);
+      if (held.node >= 0) this.tissue.point(held.node, from);
+      else from.fromArray(known?.at ?? held.target.toArray());
       placeArrow(held.arrow, from, held.target, 3.2 * this.stage.metresPerPixel());
-      const force = this.forces.get(hand);
-      held.label.textContent = force === undefined ? "" : si(force, "N", force < 1 ? 2 : 3);
-      const on = held.target.clone().project(this.stage.camera);
-      const { clientWidth: w, clientHeight: h } = this.stage.canvas;
-      held.label.style.transform = `translate(${0.5 * w * (1 + on.x) + 14}px, ${0.5 * h * (1 - on.y) - 12}px)`;
+      const force = known && Math.hypot(...known.force);
+      held.label.write(force === undefined ? "" : si(force, "N", force < 1 ? 2 : 3));
+      held.label.place(this.stage, held.target, 14, -12);
     }
   }
 
-  /** Whether the pointer is over tissue. */
-  over(event: PointerEvent): boolean {
-    return this.hit(event) !== null;
-  }
-
-  private hit(event: PointerEvent): THREE.Intersection | null {
-    const { left, top, width, height } = this.stage.canvas.getBoundingClientRect();
-    const at = new THREE.Vector2(
-      (2 * (event.clientX - left)) / width - 1,
-      1 - (2 * (event.clientY - top)) / height,
-    );
-    this.ray.setFromCamera(at, this.stage.camera);
-    return this.ray.intersectObject(this.tissue.mesh, false)[0] ?? null;
-  }
-
   private down(event: PointerEvent): void {
-    if (!this.mayPull || this.pulling || event.button !== 0 || event.ctrlKey || event.metaKey) return;
-    const hit = this.hit(event);
+    if (!this.tool || !this.mayPull || this.pulling || event.button !== 0 || event.ctrlKey || event.metaKey) return;
+    const hit = this.picker.hit(event);
     if (!hit?.face) return;
     this.stage.controls.enabled = false;
     if (this.tool === "pin" || event.shiftKey) {
@@ -114,14 +105,13 @@ export class Hands {
 
   private move(event: PointerEvent): void {
     if (event.pointerId !== this.pointer) {
-      if (event.buttons === 0) {
-        this.stage.canvas.style.cursor = this.mayPull && this.over(event) ? "grab" : "";
+      if (this.tool && event.buttons === 0) {
+        this.stage.canvas.style.cursor = this.mayPull && this.picker.hit(event) ? "grab" : "";
       }
       return;
     }
-    this.hit(event); // aims the ray
     const target = this.held.get(PULLING)?.target;
-    if (target && this.ray.ray.intersectPlane(this.plane, target)) this.moved = true;
+    if (target && this.picker.onPlane(event, this.plane, target)) this.moved = true;
   }
 
   private up(event: PointerEvent): void {
@@ -129,7 +119,7 @@ export class Hands {
       this.pointer = -1;
       this.release(PULLING);
     }
-    if (!this.pulling) this.stage.controls.enabled = true;
+    if (this.tool && !this.pulling) this.stage.controls.enabled = true;
   }
 
   private togglePin(hit: THREE.Intersection): void {
@@ -146,11 +136,10 @@ export class Hands {
   private grab(hand: number, node: number, point: THREE.Vector3): void {
     if (!this.send({ type: "grab", hand, node, point: point.toArray() as Vec })) return;
     const arrow = makeArrow(hand === PULLING ? 0xffd27a : 0x7fd4ff);
-    const label = document.createElement("div");
-    label.className = hand === PULLING ? "force" : "force pin";
-    this.labels.append(label);
+    const label = new Label(this.labels, hand === PULLING ? "force" : "force pin");
     this.stage.scene.add(arrow);
-    this.held.set(hand, { node, target: point.clone(), arrow, label });
+    const rest = new THREE.Vector3().fromArray(this.tissue.rest, 3 * node);
+    this.held.set(hand, { node, rest, target: point.clone(), arrow, label });
   }
 
   private release(hand: number): void {

@@ -6,13 +6,18 @@ export const KEYS: [string, string][] = [
   ["S", "One step"],
   ["Shift + S", "One frame (1/60 s)"],
   ["R", "Back to the start"],
-  ["T", "Change between pulling and pinning"],
+  ["T", "Next tool: pull, pin, push with a ball"],
+  ["[ ]", "The ball less deep, deeper"],
   ["Esc", "Let go of everything; close this"],
   ["C", "Next colouring (Shift: previous)"],
   ["W", "Wireframe"],
   ["U", "Undeformed ghost"],
   ["N", "Pinned nodes"],
+  ["K", "Nodes that touch something"],
+  ["L", "Springs, through a clear surface"],
+  ["X", "Cut"],
   ["G", "Ground grid"],
+  ["V", "Options of the view"],
   ["F", "Whole body in view"],
   ["P", "Panel"],
   ["D", "Plots"],
@@ -23,6 +28,7 @@ export const KEYS: [string, string][] = [
 const GESTURES: [string, string][] = [
   ["Drag the tissue", "Pull it: a spring from there to the pointer"],
   ["Shift + click the tissue", "Pin it there; again: let go"],
+  ["Hold the tissue with the ball tool", "A ball is pushed in there; drag to stroke, Shift + wheel: how deep"],
   ["Drag beside it", "Turn the view"],
   ["Wheel or two fingers", "Zoom"],
   ["Right button or two fingers", "Move the view"],
@@ -35,10 +41,10 @@ export class Help {
 
   constructor() {
     const close = h("button", { type: "button", class: "text" }, "Close");
-    const list = (entries: [string, string][]) =>
-      h("dl", {}, ...entries.flatMap(([key, what]) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, what)]));
+    const list = (entries: [string, string][], className = "") =>
+      h("dl", { class: className }, ...entries.flatMap(([key, what]) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, what)]));
     this.element = h("dialog", { id: "help", "aria-label": "Keys and gestures", "data-key": "h" },
-      h("h2", {}, "Keys"), list(KEYS), h("h2", {}, "Mouse and touch"), list(GESTURES), close);
+      h("h2", {}, "Keys"), list(KEYS, "pairs"), h("h2", {}, "Mouse and touch"), list(GESTURES), close);
     close.addEventListener("click", () => this.element.close());
     this.element.addEventListener("click", (e) => {
       if (e.target === this.element) this.element.close();

@@ -1,5 +1,6 @@
 // The panel: what may be changed, and what the simulation says of itself.
 import { h } from "./dom";
+import { fill, section, select } from "./form";
 import { digits, percent, si } from "./format";
 import type { Command, Part, SceneInfo, Status, Vec } from "./protocol";
 import { Slider } from "./slider";
@@ -38,7 +39,11 @@ export class Panel {
   private readonly facts = new Facts();
   private readonly energies = new Facts();
 
-  constructor(private readonly send: (command: Command) => boolean) {
+  /** `more`: sections of others. */
+  constructor(
+    private readonly send: (command: Command) => boolean,
+    ...more: HTMLElement[]
+  ) {
     const material = (key: string) => (value: number) => this.material(key, value);
     this.young = new Slider({ label: "Young’s modulus", low: 1e3, high: 1e9, log: true, show: (v) => si(v, "Pa"), changed: material("young") });
     this.poisson = new Slider({ label: "Poisson’s ratio", low: 0, high: 0.495, step: 0.005, show: (v) => digits(v), changed: material("poisson") });
@@ -59,14 +64,16 @@ export class Panel {
       "aside",
       { id: "panel", "aria-label": "Values" },
       section("Material", this.part.row, this.law.row, this.young.element, this.poisson.element, this.density.element, this.damping.element, this.drag.element),
+      ...more,
       section("World", this.strength.element, this.direction.row),
       section("Time", this.stepper.row, this.step.row, this.pace.element, this.facts.element),
       section("Energy", this.energies.element),
     );
   }
 
+  /** Everything but what concerns only this page. */
   setEnabled(on: boolean): void {
-    for (const input of this.element.querySelectorAll<HTMLInputElement | HTMLSelectElement>("input, select")) {
+    for (const input of this.element.querySelectorAll<HTMLInputElement | HTMLSelectElement>("input:not(.own), select")) {
       input.disabled = !on;
     }
   }
@@ -172,26 +179,4 @@ class Facts {
       if (value.textContent !== text) value.textContent = text;
     }
   }
-}
-
-let selects = 0;
-
-function select(label: string, options: [string, string][]): { row: HTMLElement; input: HTMLSelectElement } {
-  const id = `select-${++selects}`;
-  const input = h("select", { id });
-  fill(input, options);
-  return { row: h("div", { class: "row select" }, h("label", { for: id }, label), input), input };
-}
-
-function fill(input: HTMLSelectElement, options: [string, string][]): void {
-  const now = [...input.options].map((o) => [o.value, o.text].join()).join();
-  if (now === options.map((o) => o.join()).join()) return;
-  const value = input.value;
-  input.replaceChildren(...options.map(([v, text]) => h("option", { value: v }, text)));
-  if (options.some(([v]) => v === value)) input.value = value;
-}
-
-function section(title: string, ...rows: HTMLElement[]): HTMLElement {
-  const details = h("details", { open: true }, h("summary", {}, title), ...rows);
-  return details;
 }

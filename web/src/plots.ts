@@ -72,7 +72,7 @@ export class Plots {
     this.element.hidden = !open;
     this.button.setAttribute("aria-expanded", String(open));
     document.body.classList.toggle("plots", open);
-    if (open && innerWidth < NARROW) document.body.classList.add("no-panel"); // no room for both
+    if (open && innerWidth < NARROW) document.body.classList.add("no-panel", "no-options"); // no room for more
     if (open) this.build();
     else this.close();
     if (!open && inside) this.button.focus();

@@ -56,7 +56,7 @@ export interface SceneInfo {
   regions: string[];
   quantities: QuantityInfo[];
   ground: { point: Vec; normal: Vec } | null;
-  probes: string[]; // their names
+  probes: string[];
   obstacles: ObstacleInfo[];
   laws: { name: string; title: string }[]; // that a second body may have
   compare: string; // the law of the second body; empty without one
@@ -74,6 +74,7 @@ export interface HandInfo {
 /** Where a rigid sphere is, and what pushes it. */
 export interface SphereStatus {
   center: Vec;
+  radius: number; // [m]
   force: Vec; // on it [N]
   contacts: number;
 }
@@ -104,7 +105,7 @@ export interface Status {
   hands: HandInfo[];
   probes: Vec[]; // displacements [m], in the order of the scene's probes
   obstacles: SphereStatus[]; // in the order of the scene's obstacles
-  ball: (SphereStatus & { radius: number }) | null;
+  ball: SphereStatus | null;
   distance: { largest: number; mean: number } | null; // from the compared body [m]
   error: string;
   errors: number;

@@ -8,12 +8,12 @@ export interface SliderOptions {
   log?: boolean;
   step?: number; // of the straight ones
   show: (value: number) => string;
-  /** Told while the user moves it; no faster than every 40 ms. */
+  /** Told while the user moves it; no faster than every 50 ms. */
   changed: (value: number) => void;
 }
 
 const STEPS = 600; // of a logarithmic slider
-const BETWEEN = 40; // [ms]
+const BETWEEN = 50; // [ms]
 
 let count = 0;
 
@@ -49,11 +49,19 @@ export class Slider {
 
   /** The value that the simulation has; not while the user moves the slider. */
   set(value: number): void {
-    if (performance.now() - this.touched < 700) return;
+    if (performance.now() - this.touched >= 700) this.put(value);
+  }
+
+  put(value: number): void {
     const { low, high, log } = this.options;
     const at = log ? (STEPS * Math.log(value / low)) / Math.log(high / low) : value;
     this.input.value = String(at);
     this.write(value);
+  }
+
+  /** What the value means has changed. */
+  refresh(): void {
+    this.write(this.value);
   }
 
   get value(): number {

@@ -31,6 +31,22 @@ const GRID_FRAGMENT = `
     if (gl_FragColor.a < 0.004) discard;
   }`;
 
+const ROOM = 1.2; // around what is to be seen
+const GLIDE = 450; // [ms]
+const HOME = new THREE.Vector3(0.52, 0.3, 0.8).normalize(); // a little from above and from the side
+
+interface Place {
+  position: THREE.Vector3;
+  target: THREE.Vector3;
+}
+
+/** A way of the camera. */
+interface Glide {
+  from: Place;
+  to: Place;
+  start: number; // [ms]; -1: with the next picture
+}
+
 export class Stage {
   readonly scene = new THREE.Scene();
   readonly camera = new THREE.PerspectiveCamera(36, 1, 0.001, 100);
@@ -43,7 +59,9 @@ export class Stage {
   private readonly grid: THREE.Mesh<THREE.PlaneGeometry, THREE.ShaderMaterial>;
   private stale = true;
   private drawnAt = -1e9; // [ms]
-  private home = { position: new THREE.Vector3(), target: new THREE.Vector3() };
+  private covered = 0; // [px] of the view on the right
+  private glide: Glide | null = null;
+  private home: () => Place = () => ({ position: new THREE.Vector3(), target: new THREE.Vector3() });
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
@@ -97,6 +115,7 @@ export class Stage {
     this.controls.dampingFactor = 0.12;
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", () => this.changed());
+    this.controls.addEventListener("start", () => (this.glide = null));
   }
 
   /** Puts camera, sun and ground around a body with these bounds [m]. */
@@ -125,25 +144,55 @@ export class Stage {
     this.camera.far = 60 * size;
     this.controls.minDistance = 0.05 * size;
     this.controls.maxDistance = 20 * size;
-    // Far enough for the narrower side of the screen, a little from above and from the side.
-    const half = (this.camera.fov / 360) * Math.PI;
-    const fit = Math.atan(Math.tan(half) * Math.min(1, this.camera.aspect));
-    const distance = (0.52 * size) / Math.sin(fit);
-    this.home.target.copy(middle);
-    this.home.position
-      .copy(middle)
-      .addScaledVector(new THREE.Vector3(0.52, 0.3, 0.8).normalize(), distance);
+    // Far enough for the narrower side of the screen: soft bodies leave their bounds.
+    this.home = () => {
+      const half = (this.camera.fov / 360) * Math.PI;
+      const fit = Math.atan(Math.tan(half) * Math.min(1, this.camera.aspect));
+      return { target: middle, position: middle.clone().addScaledVector(HOME, (0.52 * size) / Math.sin(fit)) };
+    };
     this.goHome();
   }
 
+  /** Turns to these bounds [m], from the side where the camera is. */
+  include(boxes: THREE.Box3[]): void {
+    this.home = () => this.placeFor(boxes, HOME);
+    const from: Place = { position: this.camera.position.clone(), target: this.controls.target.clone() };
+    const to = this.placeFor(boxes, from.position.clone().sub(from.target).normalize());
+    this.glide = { from, to, start: -1 };
+    this.changed();
+  }
+
+  /** Where the camera sees all of it, from a direction, beside what lies over the view. */
+  private placeFor(boxes: THREE.Box3[], direction: THREE.Vector3): Place {
+    const all = new THREE.Box3();
+    for (const box of boxes) all.union(box);
+    const target = all.getCenter(new THREE.Vector3());
+    const up = Math.tan((this.camera.fov / 360) * Math.PI);
+    const right = up * this.camera.aspect * (1 - this.covered / Math.max(1, this.canvas.clientWidth));
+    const turn = new THREE.Matrix4().lookAt(direction, new THREE.Vector3(), this.camera.up).invert();
+    let distance = 1e-6;
+    for (const corner of boxes.flatMap(cornersOf)) {
+      corner.sub(target).applyMatrix4(turn); // z towards the viewer
+      distance = Math.max(distance, corner.z + ROOM * Math.max(Math.abs(corner.x) / right, Math.abs(corner.y) / up));
+    }
+    return { target, position: target.clone().addScaledVector(direction, distance) };
+  }
+
   goHome(): void {
+    this.glide = null;
     this.controls.enableDamping = false; // what still swings on ends
     this.controls.update();
     this.controls.enableDamping = true;
-    this.camera.position.copy(this.home.position);
-    this.controls.target.copy(this.home.target);
+    const { position, target } = this.home();
+    this.camera.position.copy(position);
+    this.controls.target.copy(target);
     this.camera.updateProjectionMatrix();
     this.controls.update();
+  }
+
+  /** The direction from what is seen to who sees it. */
+  towardsViewer(): THREE.Vector3 {
+    return this.camera.getWorldDirection(new THREE.Vector3()).negate();
   }
 
   setGrid(on: boolean): void {
@@ -156,6 +205,7 @@ export class Stage {
     this.renderer.setPixelRatio(this.modest ? 0.75 : Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / Math.max(1, height);
+    this.covered = covered;
     this.camera.setViewOffset(width, height, 0.5 * covered, 0, width, height);
     this.changed();
   }
@@ -168,12 +218,26 @@ export class Stage {
   /** Draws if there is anything new to see; without a graphics card not so often that nothing else
    * gets done. Returns whether it did. */
   draw(now: number): boolean {
+    this.glideOn(now);
     this.controls.update();
     if (!this.stale || (this.modest && now - this.drawnAt < 150)) return false;
     this.stale = false;
     this.drawnAt = now;
     this.renderer.render(this.scene, this.camera);
     return true;
+  }
+
+  private glideOn(now: number): void {
+    if (!this.glide) return;
+    const { from, to } = this.glide;
+    if (this.glide.start < 0) this.glide.start = now;
+    const calm = matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const t = calm ? 1 : Math.min(1, (now - this.glide.start) / GLIDE);
+    const share = t * t * (3 - 2 * t);
+    this.camera.position.lerpVectors(from.position, to.position, share);
+    this.controls.target.lerpVectors(from.target, to.target, share);
+    if (t === 1) this.glide = null;
+    this.changed();
   }
 
   /** The view as it is now, as a picture. */
@@ -204,6 +268,12 @@ export class Stage {
     u.across.value.set(1, 0, 0).applyQuaternion(turn);
     u.along.value.set(0, 1, 0).applyQuaternion(turn);
   }
+}
+
+export function cornersOf({ min, max }: THREE.Box3): THREE.Vector3[] {
+  const corners: THREE.Vector3[] = [];
+  for (const x of [min.x, max.x]) for (const y of [min.y, max.y]) for (const z of [min.z, max.z]) corners.push(new THREE.Vector3(x, y, z));
+  return corners;
 }
 
 /** A quiet gradient, lighter around the middle. */

@@ -62,6 +62,17 @@ describe("the range of the colour bar", () => {
     range.take(Float32Array.of(NaN), 1e-6, 3001);
     expect(range.top).toBeCloseTo(0.1);
   });
+  it("is not stretched by a stray value, but says that there is one", () => {
+    const values = new Float32Array(1000).map((_, i) => 0.04 * Math.sin(i));
+    values[7] = -5;
+    const range = new Range();
+    range.take(values, 1e-6, 0);
+    expect(range.top).toBeCloseTo(0.1);
+    expect([range.above, range.below]).toEqual([false, true]);
+    values[7] = 0;
+    range.take(values, 1e-6, 5000);
+    expect(range.below).toBe(false);
+  });
 });
 
 describe("corners", () => {

@@ -60,8 +60,9 @@ void add_obstacle_forces(const Model& model, std::span<const Vec3> x, double tim
 void add_obstacle_stiffness_times(const Model& model, std::span<const Vec3> x,
                                   std::span<const Vec3> centers, double a, std::span<const Vec3> u,
                                   bool only_stiffening, std::span<Vec3> out) {
+  const std::size_t count = std::min(centers.size(), model.obstacles.size());
   for_each_surface_node(model, [&](std::size_t n) {
-    for (std::size_t c = 0; c < centers.size(); ++c) {
+    for (std::size_t c = 0; c < count; ++c) {
       const Obstacle& o = model.obstacles[c];
       out[n] +=
           a * obstacle_stiffness_times(x[n] - centers[c], o.radius,
@@ -73,7 +74,8 @@ void add_obstacle_stiffness_times(const Model& model, std::span<const Vec3> x,
 void add_obstacle_stiffness(const Model& model, const Vec3& x, std::span<const Vec3> centers,
                             Index node, Mat3& block) {
   if (uz(node) >= model.surface_share.size() || model.surface_share[uz(node)] == 0.0) return;
-  for (std::size_t c = 0; c < centers.size(); ++c) {
+  const std::size_t count = std::min(centers.size(), model.obstacles.size());
+  for (std::size_t c = 0; c < count; ++c) {
     const Obstacle& o = model.obstacles[c];
     for (int axis = 0; axis < 3; ++axis) {
       block.col(axis) += obstacle_stiffness_times(

@@ -58,6 +58,8 @@ void add_obstacle_forces(const Model& model, std::span<const Vec3> x, double tim
                          std::span<Vec3> forces);
 
 // out += a H u, H the second derivative of W at positions x and with the obstacles at `centers`.
+// (The live view adds and removes an obstacle between steps: those without a centre yet do not
+// count.)
 void add_obstacle_stiffness_times(const Model& model, std::span<const Vec3> x,
                                   std::span<const Vec3> centers, double a, std::span<const Vec3> u,
                                   bool only_stiffening, std::span<Vec3> out);

@@ -1,6 +1,7 @@
 // What a live simulation can be told. Values are checked where they act (Simulation::apply).
 #pragma once
 
+#include <functional>
 #include <string>
 #include <variant>
 
@@ -25,6 +26,11 @@ struct Reset {};
 // Another scene in the place of this one; paused.
 struct Load {
   Scene scene;
+};
+
+// The same, of a scene that takes a while to read: the simulation's thread does it.
+struct Open {
+  std::function<Scene()> scene;  // may throw Error
 };
 
 // A key of [body.NAME] that says what it is made of: young, poisson, density, damping_ratio ...
@@ -75,7 +81,37 @@ struct Release {
 
 inline constexpr int most_hands = 16;
 
-using Command = std::variant<Play, Advance, Reset, Load, SetMaterial, SetStepping, SetGravity,
-                             SetTimeScale, SetQuantity, Grab, Drag, Release>;
+// The ball tool: a rigid, frictionless sphere that pushes. It gets there within a frame or, from
+// far, at a speed that tissue can follow.
+struct MoveBall {
+  Vec3 point = Vec3::Zero();  // where its centre is to be [m]
+  double radius = 0.0;        // [m]; 0: as it is, or a tenth of the body's size
+};
+
+struct RemoveBall {};
+
+struct SetCut {
+  Cut cut;
+};
+
+// Whether springs, and with them all nodes, are shown.
+struct SetSprings {
+  bool shown = false;
+};
+
+// Another body with the same values but this law (scene/laws.h), in lock-step with the first, from
+// where that one is now. An empty name ends it.
+struct SetCompare {
+  std::string law;
+};
+
+// Calls `done` on the simulation's thread with the state as a VTU file.
+struct SaveState {
+  std::function<void(std::string)> done;
+};
+
+using Command = std::variant<Play, Advance, Reset, Load, Open, SetMaterial, SetStepping, SetGravity,
+                             SetTimeScale, SetQuantity, Grab, Drag, Release, MoveBall, RemoveBall,
+                             SetCut, SetSprings, SetCompare, SaveState>;
 
 }  // namespace sinew::live

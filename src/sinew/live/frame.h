@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,16 +17,31 @@ struct Frame {
   std::uint64_t number = 0;    // counts up with every frame published
   double time = 0.0;           // simulated [s]
   Quantity quantity = Quantity::displacement;
-  std::vector<float> position;  // [m] (3 a surface node)
-  std::vector<float> value;     // of the quantity (surface nodes)
+  std::vector<float> position;        // [m] (3 a node shown)
+  std::vector<float> value;           // of the quantity (nodes shown)
+  std::vector<float> compared;        // positions of the compared body [m]; empty: there is none
+  std::vector<std::uint8_t> contact;  // 1 where the node touches something; empty: none does
 };
 
 // A hand that holds something.
 struct HandStatus {
   int hand = 0;
   Vec3 at = Vec3::Zero();      // where what it holds is now [m]
-  Vec3 target = Vec3::Zero();  // where it is itself [m]
+  Vec3 target = Vec3::Zero();  // where it is to be itself [m]
   Vec3 force = Vec3::Zero();   // on the tissue [N]
+};
+
+// A sphere that pushes: an obstacle of the scene or the ball tool.
+struct SphereStatus {
+  Vec3 center = Vec3::Zero();  // [m]
+  double radius = 0.0;         // [m]
+  Vec3 force = Vec3::Zero();   // of the bodies on it [N]
+  std::int64_t contacts = 0;   // nodes that it pushes
+};
+
+// How far the compared body is from the first.
+struct Distance {
+  double largest = 0.0, mean = 0.0;  // over the nodes of the bodies [m]
 };
 
 struct Status {
@@ -52,8 +68,12 @@ struct Status {
   std::int64_t contacts = 0;                     // nodes on the ground
   std::int64_t inverted_tets = 0;
   std::vector<HandStatus> hands;
-  std::string error;         // why it stopped, or what was refused last; empty: all well
-  std::uint32_t errors = 0;  // counts errors, so that the same one twice can be told
+  std::vector<Vec3> probes;             // their displacements [m], in the scene's order
+  std::vector<SphereStatus> obstacles;  // in the scene's order
+  std::optional<SphereStatus> ball;
+  std::optional<Distance> distance;  // where bodies are compared
+  std::string error;                 // why it stopped, or what was refused last; empty: all well
+  std::uint32_t errors = 0;          // counts errors, so that the same one twice can be told
 };
 
 // The values that may be changed while it runs, as they are.
@@ -71,6 +91,16 @@ struct Parameters {
   Vec3 ground_point = Vec3::Zero();
   Vec3 ground_normal = Vec3::UnitY();
   std::string scene, title, look_for;
+  std::uint32_t opened = 0;  // counts scenes loaded, from 1
+  std::vector<std::string> probes;
+  struct Sphere {
+    std::string name;
+    double radius = 0.0;  // [m]
+  };
+  std::vector<Sphere> obstacles;
+  std::string compare;  // the law compared with, or empty
+  Cut cut;
+  bool springs_shown = false;
   std::int64_t nodes = 0, tets = 0, springs = 0;
   double mass = 0.0;     // [kg]
   std::string document;  // the scene as TOML with the values as they are

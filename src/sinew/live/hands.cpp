@@ -9,6 +9,7 @@
 namespace sinew::live {
 namespace {
 
+constexpr double pace = 0.05;              // of the body's size in a frame
 constexpr double stiffness_of_disc = 4.0;  // K / (E r)
 // A hand at this share of the body's size from what it holds carries the body's weight.
 constexpr double reach = 0.1;
@@ -48,7 +49,7 @@ void Hands::grab(Model& model, State& state, int hand, Index node, const Vec3& p
   Hand& h = hands_[uz(hand)];
   h = {};
   h.radius = radius;
-  h.point = point;
+  h.point = h.target = point;
   const Vec3 middle = state.position[uz(node)];
   const Range nodes = body_of(model, node).nodes;
   for (Index i = nodes.begin; i < nodes.end; ++i) {
@@ -63,11 +64,28 @@ void Hands::grab(Model& model, State& state, int hand, Index node, const Vec3& p
   apply(model, state);
 }
 
-void Hands::drag(Model& model, State& state, int hand, const Vec3& point) {
+void Hands::approach(Hand& hand, double size) {
+  const Vec3 way = hand.point - hand.target;
+  const double most = pace * size;
+  hand.target = way.norm() <= most ? hand.point : Vec3(hand.target + most / way.norm() * way);
+}
+
+void Hands::drag(Model& model, State& state, int hand, const Vec3& point, double size) {
   Hand& h = hands_[uz(hand)];
   if (h.nodes.empty()) return;
   h.point = point;
+  approach(h, size);
   apply(model, state);
+}
+
+void Hands::follow(Model& model, State& state, double size) {
+  bool moved = false;
+  for (Hand& h : hands_) {
+    if (h.nodes.empty() || h.target == h.point) continue;
+    approach(h, size);
+    moved = true;
+  }
+  if (moved) apply(model, state);
 }
 
 void Hands::release(Model& model, State& state, int hand) {
@@ -94,7 +112,7 @@ void Hands::apply(Model& model, State& state) const {
     const Body& body = body_of(model, h.nodes.front());
     const double all = std::max(stiffness_of_disc * mean_young(model, body) * h.radius,
                                 weight_per_length(model, body));
-    Tether tether{h.nodes, {}, h.offset, h.point};
+    Tether tether{h.nodes, {}, h.offset, h.target};
     for (std::size_t i = 0; i < h.nodes.size(); ++i) {
       const double omega = 2.0 / stable_step_;
       const double most = stable_share * model.mass[uz(h.nodes[i])] * omega * omega;

@@ -17,7 +17,10 @@ class Hands {
  public:
   // `node` of the model; `radius` [m]. What a hand held before it lets go.
   void grab(Model& model, State& state, int hand, Index node, const Vec3& point, double radius);
-  void drag(Model& model, State& state, int hand, const Vec3& point);
+  // `size` of the whole body [m]: of this a hand moves a twentieth at once, and as much again with
+  // every follow(), which is called between frames. A pointer that jumps tears nothing.
+  void drag(Model& model, State& state, int hand, const Vec3& point, double size);
+  void follow(Model& model, State& state, double size);
   void release(Model& model, State& state, int hand);
   void release_all(Model& model, State& state);
 
@@ -31,12 +34,14 @@ class Hands {
 
  private:
   struct Hand {
-    std::vector<Index> nodes;   // empty: holds nothing
-    std::vector<double> share;  // (nodes) sum 1
-    std::vector<Vec3> offset;   // of the node from the point when it was grabbed [m] (nodes)
-    double radius = 0.0;        // [m]
-    Vec3 point = Vec3::Zero();
+    std::vector<Index> nodes;    // empty: holds nothing
+    std::vector<double> share;   // (nodes) sum 1
+    std::vector<Vec3> offset;    // of the node from the point when it was grabbed [m] (nodes)
+    double radius = 0.0;         // [m]
+    Vec3 point = Vec3::Zero();   // where it is to be [m]
+    Vec3 target = Vec3::Zero();  // where it pulls from [m]
   };
+  static void approach(Hand& hand, double size);
   void apply(Model& model, State& state) const;
 
   std::array<Hand, most_hands> hands_;

@@ -17,10 +17,17 @@ Mat3 edges_of(const std::vector<Vec3>& x, const Tet& t) {
   return D;
 }
 
+Mat3 deformation_of(const Model& model, const State& state, const Tet& t) {
+  return edges_of(state.position, t) * edges_of(model.rest_position, t).inverse();
+}
+
 double stress_of(const Model& model, const State& state, Index tet) {
-  const Tet& t = model.tets[uz(tet)];
-  const Mat3 F = edges_of(state.position, t) * edges_of(model.rest_position, t).inverse();
-  return von_mises(model.tet_modulus[uz(tet)], F);
+  return von_mises(model.tet_modulus[uz(tet)], deformation_of(model, state, model.tets[uz(tet)]));
+}
+
+double energy_of(const Model& model, const State& state, Index tet) {
+  return distortion_energy(model.tet_modulus[uz(tet)],
+                           deformation_of(model, state, model.tets[uz(tet)]));
 }
 
 double volume_change_of(const Model& model, const State& state, Index tet) {
@@ -42,6 +49,13 @@ double von_mises(double shear_modulus, const Mat3& F) {
   const Mat3 B = F * F.transpose();
   const Mat3 deviator = B - B.trace() / 3.0 * Mat3::Identity();
   return std::sqrt(1.5) * shear_modulus / J * deviator.norm();
+}
+
+double distortion_energy(double shear_modulus, const Mat3& F) {
+  const double J = F.determinant();
+  if (!(J > 0.0)) return 0.0;
+  const double r = 1.0 / std::cbrt(J);
+  return 0.5 * shear_modulus * std::max(0.0, r * r * F.squaredNorm() - 3.0);
 }
 
 std::vector<float> measure(Quantity quantity, const Model& model, const State& state,
@@ -67,7 +81,8 @@ std::vector<float> measure(Quantity quantity, const Model& model, const State& s
       break;
     case Quantity::stretch: {
       const std::vector<double> stretch = node_stretch(model, state.position);
-      fill([&](Index i) { return stretch[node(i)]; });
+      // Anchors of attachments, which come after the nodes of bodies, have none.
+      fill([&](Index i) { return node(i) < stretch.size() ? stretch[node(i)] : 0.0; });
       break;
     }
     case Quantity::volume:
@@ -76,11 +91,16 @@ std::vector<float> measure(Quantity quantity, const Model& model, const State& s
     case Quantity::stress:
       fill([&](Index i) { return mean(i, stress_of); });
       break;
+    case Quantity::energy:
+      fill([&](Index i) { return mean(i, energy_of); });
+      break;
     case Quantity::speed:
       fill([&](Index i) { return state.half_velocity[node(i)].norm(); });
       break;
     case Quantity::region:
       fill([&](Index i) { return topology.region[uz(i)]; });
+      break;
+    case Quantity::distance:
       break;
   }
   return values;

@@ -16,8 +16,10 @@ enum class Quantity {
   stretch,       // of the spring at the node that is furthest from rest, |x_ij| / l0 - 1 [-]
   volume,        // change of the tets at the node, v / V - 1 [-]
   stress,        // von Mises stress of the tets at the node [Pa]
+  energy,        // of the change of shape per volume of the tets at the node [J/m3]
   speed,         // |v| [m/s]
   region,        // number of the region (Topology::regions)
+  distance,      // from the node of the compared body [m]; 0 where there is none
 };
 
 struct QuantityInfo {
@@ -26,13 +28,15 @@ struct QuantityInfo {
   std::string_view unit;
   bool is_signed;  // colours should be centred on 0
 };
-inline constexpr std::array<QuantityInfo, 6> quantities = {{
+inline constexpr std::array<QuantityInfo, 8> quantities = {{
     {"displacement", "Displacement", "m", false},
     {"stretch", "Stretch of springs", "", true},
     {"volume", "Change of volume", "", true},
     {"stress", "Von Mises stress", "Pa", false},
+    {"energy", "Energy of distortion", "J/m³", false},
     {"speed", "Speed", "m/s", false},
     {"region", "Region", "", false},
+    {"distance", "Distance between laws", "m", false},
 }};
 inline const QuantityInfo& info(Quantity q) {
   return quantities[static_cast<std::size_t>(q)];
@@ -44,7 +48,12 @@ std::optional<Quantity> quantity_named(std::string_view name);
 // is flat or inside out: there is no such stress then.
 double von_mises(double shear_modulus, const Mat3& F);
 
-// The quantity at every node of the surface, means over the tets at the node where it is theirs.
+// The energy that such a material takes to change its shape, not its volume [J/m3]:
+// mu / 2 (J^(-2/3) |F|^2 - 3). 0 where the tet is flat or inside out.
+double distortion_energy(double shear_modulus, const Mat3& F);
+
+// The quantity at every node that is shown, means over the tets at the node where it is theirs.
+// All but distance, which is 0.
 std::vector<float> measure(Quantity quantity, const Model& model, const State& state,
                            const Topology& topology);
 

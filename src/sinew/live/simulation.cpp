@@ -3,14 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
-#include <string_view>
+#include <utility>
 
 #include "sinew/base/error.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/springs.h"
 #include "sinew/live/carry_over.h"
+#include "sinew/live/look.h"
+#include "sinew/run/recorder.h"
 #include "sinew/run/summary.h"
 #include "sinew/scene/build.h"
 
@@ -21,38 +23,6 @@ namespace {
 constexpr double for_ever = 1e9;
 // How much is measured before the speed is said anew [s] of wall time.
 constexpr double speed_window = 0.5;
-
-constexpr std::array<std::string_view, 13> material_keys = {
-    "law",  "young",         "poisson",        "density", "damping", "damping_ratio", "viscosity",
-    "drag", "stretch_limit", "compress_limit", "volume",  "beta",    "volume_limit"};
-constexpr std::array<std::string_view, 7> stepping_keys = {
-    "stepper", "scheme", "dt", "substeps", "precision", "tolerance", "safety"};
-
-template <std::size_t N>
-void require_key(const std::array<std::string_view, N>& keys, const std::string& key) {
-  if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
-  throw Error(ErrorKind::usage, fmt::format("'{}' cannot be changed while it runs", key),
-              fmt::format("one of {}", fmt::join(keys, ", ")));
-}
-
-// A value goes into the scene's document as TOML: a number or a word, and nothing else.
-void require_plain(const std::string& value) {
-  const bool plain = !value.empty() && value.size() <= 40 &&
-                     value.find_first_not_of(
-                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
-                         "0123456789+-._") == std::string::npos;
-  if (!plain) throw Error(ErrorKind::usage, "the value is no number and no word", "such as 15e3");
-}
-
-void require_point(const Vec3& point) {
-  if (!point.allFinite() || point.cwiseAbs().maxCoeff() > 1e6) {
-    throw Error(ErrorKind::usage, "the point is not within 1e6 m", "give x, y, z in metres");
-  }
-}
-
-Scene with(const Scene& scene, const std::vector<std::string>& overrides) {
-  return parse_scene(scene.document, scene.file, scene.base, overrides);
-}
 
 double interval_of(const Scene& scene) {
   const double frame = 1.0 / scene.output.fps;
@@ -68,141 +38,17 @@ Simulation::Simulation(const Scene& scene) {
 void Simulation::apply(const Command& command) {
   if (!std::holds_alternative<Drag>(command)) error_.clear();
   std::visit([&](const auto& c) { act(c); }, command);
+  if (other_) tell_other(command);
 }
 
 void Simulation::report(const Error& error) {
-  error_ = error.message();
-  if (!error.remedy().empty()) error_ += "; remedy: " + error.remedy();
+  error_ = error.what();
   ++errors_;
 }
 
-void Simulation::act(const Play& c) {
-  running_ = c.running;
-}
-
-void Simulation::act(const Advance& c) {
-  running_ = false;
-  if (!c.frame) return take_step();
-  while (!advance(Clock::now() + std::chrono::seconds(1)) && error_.empty()) {
-  }
-}
-
-void Simulation::act(const Reset&) {
+void Simulation::let_go() {
   hands_.release_all(*model_, run_.state);
-  rebuild(scene_, nullptr);
-}
-
-void Simulation::act(const Load& c) {
-  if (model_) hands_.release_all(*model_, run_.state);
-  hands_ = {};
-  rebuild(c.scene, nullptr);
-  running_ = false;
-  ++revision_;
-  topology_ = std::make_shared<Topology>(
-      make_topology(*model_, revision_, scene_.title.empty() ? scene_.name : scene_.title));
-  remember_parameters();
-}
-
-void Simulation::act(const SetMaterial& c) {
-  require_key(material_keys, c.key);
-  require_plain(c.value);
-  std::vector<std::string> overrides;
-  bool found = false;
-  for (const SceneBody& body : scene_.bodies) {
-    if (!c.body.empty() && body.name != c.body) continue;
-    found = found || c.region.empty();
-    const std::string at = "body." + body.name + ".";
-    if (c.region.empty()) overrides.push_back(at + c.key + "=" + c.value);
-    for (const SceneRegion& region : body.regions) {
-      if (!c.region.empty() && region.name != c.region) continue;
-      found = true;
-      overrides.push_back(at + "region." + region.name + "." + c.key + "=" + c.value);
-    }
-  }
-  if (!found) {
-    throw Error(ErrorKind::usage, "the scene has no such body or region",
-                "name one that the message 'scene' lists");
-  }
-  change(overrides);
-}
-
-void Simulation::act(const SetStepping& c) {
-  require_key(stepping_keys, c.key);
-  require_plain(c.value);
-  change({c.key + "=" + c.value});
-}
-
-void Simulation::act(const SetGravity& c) {
-  if (!c.gravity.allFinite() || c.gravity.norm() > 1e4) {
-    throw Error(ErrorKind::usage, "gravity is not within 1e4 m/s2", "the earth's is 9.81 m/s2");
-  }
-  // The forces take it from the model in every step: nothing has to be built for it.
-  scene_ = with(scene_,
-                {fmt::format("gravity=[{},{},{}]", c.gravity.x(), c.gravity.y(), c.gravity.z())});
-  stepped_.gravity = c.gravity;
-  model_->gravity = c.gravity;
-  remember_parameters();
-}
-
-void Simulation::act(const SetTimeScale& c) {
-  if (!(c.scale >= 1e-3 && c.scale <= 100.0)) {
-    throw Error(ErrorKind::usage, "the time scale is not from 0.001 to 100", "1 is real time");
-  }
-  time_scale_ = c.scale;
-}
-
-void Simulation::act(const SetQuantity& c) {
-  quantity_ = c.quantity;
-}
-
-namespace {
-void require_hand(int hand) {
-  if (hand >= 0 && hand < most_hands) return;
-  throw Error(ErrorKind::usage, "no such hand", fmt::format("from 0 to {}", most_hands - 1));
-}
-}  // namespace
-
-void Simulation::act(const Grab& c) {
-  require_hand(c.hand);
-  require_point(c.point);
-  if (c.node < 0 || uz(c.node) >= topology_->node.size()) {
-    throw Error(ErrorKind::usage, "no such node of the surface",
-                fmt::format("from 0 to {}", topology_->node.size() - 1));
-  }
-  if (!(c.radius >= 0.0 && c.radius <= 1e6)) {
-    throw Error(ErrorKind::usage, "the radius is not from 0 to 1e6 m", "0 for the usual one");
-  }
-  const double usual = std::max(1.7 * static_cast<double>(topology_->edge),
-                                0.04 * static_cast<double>(topology_->diagonal));
-  hands_.grab(*model_, run_.state, c.hand, topology_->node[uz(c.node)], c.point,
-              c.radius > 0.0 ? c.radius : usual);
-}
-
-void Simulation::act(const Drag& c) {
-  require_hand(c.hand);
-  require_point(c.point);
-  hands_.drag(*model_, run_.state, c.hand, c.point);
-}
-
-void Simulation::act(const Release& c) {
-  require_hand(c.hand);
-  hands_.release(*model_, run_.state, c.hand);
-}
-
-// The scene with other values, going on from where the nodes are.
-void Simulation::change(const std::vector<std::string>& overrides) {
-  const State keep = run_.state;
-  const Scene changed = with(scene_, overrides);
-  try {
-    rebuild(changed, &keep);
-  } catch (const Error& e) {
-    // A given step that the new material is too stiff for is no reason to refuse the material.
-    const bool asked = std::any_of(overrides.begin(), overrides.end(), [](const std::string& o) {
-      return o.starts_with("dt=") || o.starts_with("substeps=");
-    });
-    if (e.kind() != ErrorKind::unstable || asked) throw;
-    rebuild(with(changed, {"dt=auto"}), &keep);
-  }
+  ball_.remove(*model_, run_.state);
 }
 
 // Makes everything anew before anything of it is put in place: a scene that cannot be built leaves
@@ -229,7 +75,10 @@ void Simulation::rebuild(const Scene& scene, const State* keep) {
   model_ = std::move(model);
   run_ = std::move(run);
   good_ = run_.state;
-  hands_.hold(*model_, run_.state, run_.stable_step > 0.0 ? run_.stable_step : no_limit);
+  const double stable = run_.stable_step > 0.0 ? run_.stable_step : no_limit;
+  hands_.hold(*model_, run_.state, stable);
+  ball_.hold(*model_, run_.state, stable);
+  ahead_ = false;
   speed_ = last_speed_ = {};
   remember_parameters();
 }
@@ -251,6 +100,12 @@ void Simulation::remember_parameters() {
     p->ground_point = scene_.ground->point;
     p->ground_normal = scene_.ground->normal;
   }
+  p->opened = opened_;
+  for (const Probe& probe : model_->probes) p->probes.push_back(probe.name);
+  for (const SceneObstacle& o : scene_.obstacles) p->obstacles.push_back({o.name, o.radius});
+  p->compare = compare_;
+  p->cut = cut_;
+  p->springs_shown = springs_;
   p->scene = scene_.name;
   p->title = scene_.title;
   p->look_for = scene_.look_for;
@@ -265,10 +120,16 @@ void Simulation::remember_parameters() {
 
 void Simulation::take_step() {
   steps(Clock::time_point::max(), nullptr, true);
+  catch_up(Clock::time_point::max(), nullptr);
 }
 
 bool Simulation::advance(Clock::time_point deadline, const std::atomic<bool>* hurry) {
-  return steps(deadline, hurry, false);
+  if (!ahead_) ahead_ = steps(deadline, hurry, false);
+  if (!ahead_ || !catch_up(deadline, hurry)) return false;
+  ahead_ = false;
+  hands_.follow(*model_, run_.state, size());
+  ball_.follow(*model_, run_.state, interval_of(stepped_));
+  return true;
 }
 
 bool Simulation::steps(Clock::time_point deadline, const std::atomic<bool>* hurry, bool only_one) {
@@ -294,7 +155,7 @@ bool Simulation::steps(Clock::time_point deadline, const std::atomic<bool>* hurr
     run_.state = good_;
     run_.steps_left = 0;
     run_.frame = static_cast<std::int64_t>(std::floor(good_.time / interval_of(stepped_) + 1e-9));
-    hands_.release_all(*model_, run_.state);
+    let_go();
     return true;
   }
   if (finished) good_ = run_.state;
@@ -313,8 +174,10 @@ bool Simulation::steps(Clock::time_point deadline, const std::atomic<bool>* hurr
 // What keeps the simulation from the speed that is asked for.
 std::string Simulation::limiting() const {
   if (last_speed_.wall == 0.0) return {};
-  const double capacity = last_speed_.simulated / last_speed_.wall;
-  if (capacity >= time_scale_) return {};
+  if (capacity() >= time_scale_) return {};
+  if (other_ && capacity() < 0.7 * last_speed_.simulated / last_speed_.wall) {
+    return "two bodies are stepped, and the one with the other law takes most of the time";
+  }
   if (run_.stepper == "implicit") {
     return fmt::format("each implicit step takes {:.1f} Newton steps",
                        static_cast<double>(last_speed_.newton) /
@@ -341,7 +204,7 @@ Status Simulation::status() {
   const Speed& v = last_speed_;
   if (v.steps > 0) {
     const auto count = static_cast<double>(v.steps);
-    s.capacity = v.simulated / v.wall;
+    s.capacity = capacity();
     s.ms_per_step = 1e3 * v.wall / count;
     s.steps_per_frame = count / (frames_per_second * v.simulated);
     s.newton_per_step = static_cast<double>(v.newton) / count;
@@ -363,6 +226,16 @@ Status Simulation::status() {
   s.contacts = run_.contacts;
   s.inverted_tets = count_inverted(*model_, run_.state.position);
   s.hands = hands_.status(*model_, run_.state);
+  for (const ProbeReading& p : read_probes(*model_, run_.state.position)) {
+    s.probes.push_back(p.displacement);
+  }
+  for (const ObstacleReading& o : read_obstacles(*model_, run_.state.position, run_.state.time)) {
+    if (s.obstacles.size() == scene_.obstacles.size()) break;  // the ball comes last
+    const double radius = model_->obstacles[s.obstacles.size()].radius;
+    s.obstacles.push_back({o.center, radius, o.force, o.contacts});
+  }
+  s.ball = ball_.status(*model_, run_.state);
+  if (other_) s.distance = distance_between(pair_.mine, pair_.others, model_->body_node_count());
   s.error = error_;
   s.errors = errors_;
   return s;
@@ -374,13 +247,14 @@ Frame Simulation::frame() {
   f.number = ++frames_;
   f.time = run_.state.time;
   f.quantity = quantity_;
-  f.position.reserve(3 * topology_->node.size());
-  for (const Index n : topology_->node) {
-    for (int c = 0; c < 3; ++c) {
-      f.position.push_back(static_cast<float>(run_.state.position[uz(n)][c]));
-    }
-  }
+  // Compared bodies are shown at the same time, where both have got to.
+  f.position = gather(other_ ? pair_.mine : run_.state.position, topology_->node);
   f.value = measure(quantity_, *model_, run_.state, *topology_);
+  f.contact = find_contacts(*model_, run_.state, *topology_);
+  if (other_) {
+    f.compared = gather(pair_.others, topology_->node);
+    if (quantity_ == Quantity::distance) f.value = distances(f.position, f.compared);
+  }
   return f;
 }
 

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <memory>
 
+#include "sinew/live/ball.h"
 #include "sinew/live/command.h"
 #include "sinew/live/frame.h"
 #include "sinew/live/hands.h"
@@ -31,8 +32,9 @@ class Simulation {
   double time_scale() const { return time_scale_; }
 
   // Takes steps to the end of the frame under way, but none after `deadline` or once `hurry` is
-  // set, and one at least. Returns whether the frame is finished. A body that diverges is put back
-  // to where the last frame ended, paused, and the status says why.
+  // set, and one at least. Returns whether the frame is finished, that of a compared body included.
+  // A body that diverges is put back to where the last frame ended, paused, and the status says
+  // why.
   bool advance(Clock::time_point deadline, const std::atomic<bool>* hurry = nullptr);
   void take_step();
 
@@ -59,6 +61,7 @@ class Simulation {
   void act(const Advance& c);
   void act(const Reset& c);
   void act(const Load& c);
+  void act(const Open& c) { act(Load{c.scene()}); }
   void act(const SetMaterial& c);
   void act(const SetStepping& c);
   void act(const SetGravity& c);
@@ -67,11 +70,24 @@ class Simulation {
   void act(const Grab& c);
   void act(const Drag& c);
   void act(const Release& c);
+  void act(const MoveBall& c);
+  void act(const RemoveBall& c);
+  void act(const SetCut& c);
+  void act(const SetSprings& c);
+  void act(const SetCompare& c);
+  void act(const SaveState& c);
 
   void change(const std::vector<std::string>& overrides);
   void rebuild(const Scene& scene, const State* keep);
   void remember_parameters();
+  void show(const Cut& cut, bool springs);
+  void let_go();
+  void tell_other(const Command& command);
+  bool catch_up(Clock::time_point deadline, const std::atomic<bool>* hurry);
+  void note_pair();
+  double size() const { return static_cast<double>(topology_->diagonal); }
   bool steps(Clock::time_point deadline, const std::atomic<bool>* hurry, bool only_one);
+  double capacity() const;
   std::string limiting() const;
 
   Scene scene_;    // as its document says it
@@ -83,13 +99,25 @@ class Simulation {
   std::shared_ptr<const Topology> topology_;
   std::shared_ptr<const Parameters> parameters_;
   Hands hands_;
+  Ball ball_;
+  Cut cut_;
+  bool springs_ = false;
   Quantity quantity_ = Quantity::displacement;
   double time_scale_ = 1.0;
   bool running_ = false;
   std::uint64_t frames_ = 0;
-  std::uint32_t revision_ = 0, changes_ = 0, errors_ = 0;
+  std::uint32_t revision_ = 0, opened_ = 0, changes_ = 0, errors_ = 0;
   std::string error_;
   Speed speed_, last_speed_;
+
+  // The body that this one is compared with: a simulation of the same scene with another law.
+  std::unique_ptr<Simulation> other_;
+  std::string compare_;  // that law's name
+  bool ahead_ = false;   // this one's frame is finished, the other's is not
+  struct Pair {          // positions of both at the same time [m] (nodes)
+    std::vector<Vec3> mine, others;
+  };
+  Pair pair_;
 };
 
 }  // namespace sinew::live

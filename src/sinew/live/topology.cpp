@@ -41,6 +41,7 @@ void name_regions(const Model& model, Topology& t) {
   t.region.assign(t.node.size(), 0);
   std::size_t body = 0;
   for (std::size_t i = 0; i < t.node.size(); ++i) {
+    if (t.node[i] >= model.body_node_count()) break;  // anchors of attachments
     while (t.node[i] >= model.bodies[body].nodes.end) ++body;
     int region = 0;
     for (Index k = t.tet_start[i]; k < t.tet_start[i + 1]; ++k) {
@@ -50,21 +51,79 @@ void name_regions(const Model& model, Topology& t) {
   }
 }
 
+// The tets that the cut leaves.
+std::vector<Tet> tets_left(const Model& model, const Cut& cut) {
+  if (cut.normal.isZero()) return model.tets;
+  std::vector<Tet> left;
+  double least = no_limit;
+  Tet last{};
+  for (const Tet& tet : model.tets) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index n : tet) middle += 0.25 * model.rest_position[uz(n)];
+    const double height = cut.normal.dot(middle);
+    if (height <= cut.offset) left.push_back(tet);
+    if (height < least) {
+      least = height;
+      last = tet;
+    }
+  }
+  if (left.empty() && !model.tets.empty()) left.push_back(last);
+  return left;
+}
+
+// Marks the nodes to be shown by 0, others by -1.
+std::vector<Index> shown_nodes(const Model& model, const std::vector<Tet>& tets,
+                               const Surface& surface, bool springs) {
+  std::vector<Index> of(uz(model.node_count()), -1);
+  if (springs) {
+    for (const Tet& tet : tets) {
+      for (const Index n : tet) of[uz(n)] = 0;
+    }
+    std::fill(of.begin() + model.body_node_count(), of.end(), 0);
+  } else {
+    for (const Triangle& triangle : surface.triangles) {
+      for (const Index n : triangle) of[uz(n)] = 0;
+    }
+  }
+  return of;
+}
+
+void list_springs(const Model& model, const std::vector<Index>& of, Topology& t) {
+  for (const Edge& spring : model.springs) {
+    const Index a = of[uz(spring[0])];
+    const Index b = of[uz(spring[1])];
+    if (a < 0 || b < 0) continue;
+    t.spring.push_back(static_cast<std::uint32_t>(a));
+    t.spring.push_back(static_cast<std::uint32_t>(b));
+  }
+}
+
+double diagonal_of(const Model& model) {
+  const Index n = model.body_node_count();
+  if (n == 0) return 0.0;
+  Vec3 low = model.rest_position.front();
+  Vec3 high = low;
+  for (Index i = 0; i < n; ++i) {
+    low = low.cwiseMin(model.rest_position[uz(i)]);
+    high = high.cwiseMax(model.rest_position[uz(i)]);
+  }
+  return (high - low).norm();
+}
+
 }  // namespace
 
-Topology make_topology(const Model& model, std::uint32_t revision, const std::string& title) {
+Topology make_topology(const Model& model, std::uint32_t revision, const Cut& cut, bool springs) {
   Topology t;
   t.revision = revision;
-  t.title = title;
-  const Surface surface = build_surface(model.tets, model.node_count());
-  std::vector<Index> of(uz(model.node_count()), -1);
-  for (const Triangle& triangle : surface.triangles) {
-    for (const Index n : triangle) of[uz(n)] = 0;
-  }
+  const std::vector<Tet> tets = tets_left(model, cut);
+  const Surface surface = build_surface(tets, model.node_count());
+  std::vector<Index> of = shown_nodes(model, tets, surface, springs);
   for (Index n = 0; n < model.node_count(); ++n) {
     if (of[uz(n)] < 0) continue;
     of[uz(n)] = static_cast<Index>(t.node.size());
     t.node.push_back(n);
+    add_coordinates(model.rest_position[uz(n)], t.rest);
+    t.pinned.push_back(model.inverse_mass[uz(n)] == 0.0 ? 1 : 0);
   }
   double edges = 0.0;
   for (const Triangle& triangle : surface.triangles) {
@@ -75,20 +134,11 @@ Topology make_topology(const Model& model, std::uint32_t revision, const std::st
       edges += (model.rest_position[a] - model.rest_position[b]).norm();
     }
   }
-  Vec3 low = Vec3::Zero();
-  Vec3 high = Vec3::Zero();
-  for (std::size_t i = 0; i < t.node.size(); ++i) {
-    const auto n = uz(t.node[i]);
-    const Vec3& X = model.rest_position[n];
-    low = i == 0 ? X : Vec3(low.cwiseMin(X));
-    high = i == 0 ? X : Vec3(high.cwiseMax(X));
-    add_coordinates(X, t.rest);
-    t.pinned.push_back(model.inverse_mass[n] == 0.0 ? 1 : 0);
-  }
-  t.diagonal = static_cast<float>((high - low).norm());
+  t.diagonal = static_cast<float>(diagonal_of(model));
   if (!t.triangle.empty()) {
     t.edge = static_cast<float>(edges / static_cast<double>(t.triangle.size()));
   }
+  if (springs) list_springs(model, of, t);
   list_tets(model, of, t);
   name_regions(model, t);
   return t;

@@ -1,5 +1,5 @@
-// The surface of a model's bodies: what the live view draws. The same until another scene is
-// loaded.
+// What the live view draws of a model: the surface of its bodies, or of what a cut leaves of them,
+// and springs if asked for. The same until another scene is loaded or something else is to be seen.
 #pragma once
 
 #include <cstdint>
@@ -10,24 +10,33 @@
 
 namespace sinew::live {
 
-struct Topology {
-  std::uint32_t revision = 0;           // of the scene that it belongs to, from 1
-  std::string title;                    // of the scene
-  std::vector<Index> node;              // of the Model (surface nodes), increasing
-  std::vector<std::uint32_t> triangle;  // surface nodes, counter-clockwise seen from outside,
-                                        // (3 a triangle)
-  std::vector<float> rest;              // rest positions [m] (3 a surface node)
-  std::vector<std::uint8_t> region;     // index into regions (surface nodes)
-  std::vector<std::uint8_t> pinned;     // 1 where the motion is given (surface nodes)
-  std::vector<std::string> regions;     // "liver: parenchyma"
-  float diagonal = 0.0F;                // of the rest positions' bounding box [m]
-  float edge = 0.0F;                    // mean edge of the surface [m]
-
-  // Of the model, for what is measured there:
-  std::vector<Index> tet_start;  // offsets into tet (surface nodes + 1)
-  std::vector<Index> tet;        // tets at each surface node
+// Which tets are not shown: those whose middle X at rest has normal . X > offset. A normal of zero
+// shows all.
+struct Cut {
+  Vec3 normal = Vec3::Zero();
+  double offset = 0.0;  // [m] times the length of the normal
 };
 
-Topology make_topology(const Model& model, std::uint32_t revision, const std::string& title);
+struct Topology {
+  std::uint32_t revision = 0;           // counts topologies, from 1
+  std::vector<Index> node;              // of the Model (nodes shown), increasing
+  std::vector<std::uint32_t> triangle;  // nodes shown, counter-clockwise seen from outside,
+                                        // (3 a triangle)
+  std::vector<std::uint32_t> spring;    // nodes shown (2 a spring)
+  std::vector<float> rest;              // rest positions [m] (3 a node shown)
+  std::vector<std::uint8_t> region;     // index into regions (nodes shown)
+  std::vector<std::uint8_t> pinned;     // 1 where the motion is given (nodes shown)
+  std::vector<std::string> regions;     // "liver: parenchyma"
+  float diagonal = 0.0F;                // of the whole body's bounding box at rest [m]
+  float edge = 0.0F;                    // mean edge of what is drawn [m]
+
+  // Of the model, for what is measured there:
+  std::vector<Index> tet_start;  // offsets into tet (nodes shown + 1)
+  std::vector<Index> tet;        // tets at each node shown
+};
+
+// A cut that would leave nothing leaves the tet that it would take last.
+Topology make_topology(const Model& model, std::uint32_t revision, const Cut& cut = {},
+                       bool springs = false);
 
 }  // namespace sinew::live

@@ -114,7 +114,8 @@ void Recorder::record(RunState& run, Workspace& workspace) {
   const Energies e = measure_energies(model_, run.state, workspace);  // also fills the forces
   run.frame_times.push_back(run.state.time);
   if (vtu_) {
-    write_frame(run, workspace);
+    io::write_file(folder_ / frame_file(scene_, run.frame_times.size() - 1),
+                   format_frame(model_, run, workspace, encoding_, cells_));
     write_collection(run);
   }
 
@@ -149,43 +150,44 @@ void Recorder::record(RunState& run, Workspace& workspace) {
                   w.steps, w.newton_steps, w.products, w.residual, w.cut_short > 0 ? "yes" : "no"));
 }
 
-void Recorder::write_frame(const RunState& run, const Workspace& workspace) const {
+std::string format_frame(const Model& model, const RunState& run, const Workspace& workspace,
+                         io::VtuEncoding encoding, std::string_view cells) {
   const std::vector<Vec3>& x = run.state.position;
-  const std::vector<Vec3> velocity = synchronous_velocity(model_, run.state, workspace);
-  const auto nodes = uz(model_.body_node_count());
+  const std::vector<Vec3> velocity = synchronous_velocity(model, run.state, workspace);
+  const auto nodes = uz(model.body_node_count());
   std::vector<Vec3> displacement(nodes);
   std::vector<int> pinned(nodes);
   for (std::size_t i = 0; i < nodes; ++i) {
-    displacement[i] = x[i] - model_.rest_position[i];
-    pinned[i] = model_.inverse_mass[i] == 0.0 ? 1 : 0;
+    displacement[i] = x[i] - model.rest_position[i];
+    pinned[i] = model.inverse_mass[i] == 0.0 ? 1 : 0;
   }
-  std::vector<double> ratio(model_.tets.size());
-  std::vector<int> body(model_.tets.size());
-  for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-    const Range tets = model_.bodies[b].tets;
+  std::vector<double> ratio(model.tets.size());
+  std::vector<int> body(model.tets.size());
+  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
+    const Range tets = model.bodies[b].tets;
     for (Index t = tets.begin; t < tets.end; ++t) {
-      ratio[uz(t)] = signed_volume(x, model_.tets[uz(t)]) / model_.rest_volume[uz(t)];
+      ratio[uz(t)] = signed_volume(x, model.tets[uz(t)]) / model.rest_volume[uz(t)];
       body[uz(t)] = static_cast<int>(b);
     }
   }
-  const std::vector<double> stretch = node_stretch(model_, x);
-  const std::vector<double> pressure = measure_pressure(model_, x, workspace);
+  const std::vector<double> stretch = node_stretch(model, x);
+  const std::vector<double> pressure = measure_pressure(model, x, workspace);
 
   io::VtuData data;
   data.points = std::span(x).first(nodes);
-  data.tets = model_.tets;
+  data.tets = model.tets;
   data.point_vectors = {{"displacement", displacement},
                         {"velocity", std::span(velocity).first(nodes)}};
   data.point_scalars = {{"stretch", stretch}};
   data.point_integers = {{"pinned", pinned}};
   data.cell_scalars = {{"volume_ratio", ratio}};
-  if (model_.has_volume) data.cell_scalars.push_back({"pressure", pressure});
-  data.cell_integers = {{"region", model_.tet_region}, {"body", body}};
+  if (model.has_volume) data.cell_scalars.push_back({"pressure", pressure});
+  data.cell_integers = {{"region", model.tet_region}, {"body", body}};
   data.time = run.state.time;
-  data.encoded_cells = cells_;
+  data.encoded_cells = cells;
   io::VtuOptions options;
-  options.encoding = encoding_;
-  io::write_vtu(folder_ / frame_file(scene_, run.frame_times.size() - 1), data, options);
+  options.encoding = encoding;
+  return io::format_vtu(data, options);
 }
 
 void Recorder::write_collection(const RunState& run) const {

@@ -24,7 +24,6 @@ class Recorder {
   void record(RunState& run, Workspace& workspace);
 
  private:
-  void write_frame(const RunState& run, const Workspace& workspace) const;
   void write_collection(const RunState& run) const;
 
   const Model& model_;
@@ -37,6 +36,12 @@ class Recorder {
   std::ofstream energy_;
   std::ofstream frames_;
 };
+
+// The state as a VTU file: tets with displacement, velocity, stretch, pinned, volume ratio,
+// pressure, region and body. `workspace` as measure_energies() leaves it; `cells` as
+// VtuData::encoded_cells.
+std::string format_frame(const Model& model, const RunState& run, const Workspace& workspace,
+                         io::VtuEncoding encoding, std::string_view cells = {});
 
 // Stretch of each body node: that of its spring furthest from rest, |x_ij| / l0 - 1 [-].
 std::vector<double> node_stretch(const Model& model, const std::vector<Vec3>& x);

@@ -36,23 +36,30 @@ bool origin_allowed(std::string_view origin, std::string_view host) {
   return origin.empty() || lower(origin) == "http://" + lower(host);
 }
 
-bool token_allowed(const Door& door, std::string_view target) {
-  if (door.token.empty()) return true;
+std::string_view query_value(std::string_view target, std::string_view key) {
   const std::size_t query = target.find('?');
-  if (query == std::string_view::npos) return false;
+  if (query == std::string_view::npos) return {};
   std::string_view rest = target.substr(query + 1);
   while (!rest.empty()) {
     const std::size_t end = rest.find('&');
     const std::string_view part = rest.substr(0, end);
     rest = end == std::string_view::npos ? std::string_view() : rest.substr(end + 1);
-    if (!part.starts_with("token=")) continue;
-    const std::string_view given = part.substr(6);
-    if (given.size() != door.token.size()) return false;
-    int differs = 0;
-    for (std::size_t i = 0; i < given.size(); ++i) differs |= given[i] ^ door.token[i];
-    return differs == 0;
+    if (part.size() > key.size() && part.starts_with(key) && part[key.size()] == '=') {
+      return part.substr(key.size() + 1);
+    }
   }
-  return false;
+  return {};
+}
+
+bool same_secret(std::string_view given, std::string_view secret) {
+  if (secret.empty() || given.size() != secret.size()) return false;
+  int differs = 0;
+  for (std::size_t i = 0; i < given.size(); ++i) differs |= given[i] ^ secret[i];
+  return differs == 0;
+}
+
+bool token_allowed(const Door& door, std::string_view target) {
+  return door.token.empty() || same_secret(query_value(target, "token"), door.token);
 }
 
 std::string_view path_of(std::string_view target) {

@@ -23,7 +23,14 @@ bool host_allowed(const Door& door, std::string_view host);
 // that are no browser send none.
 bool origin_allowed(std::string_view origin, std::string_view host);
 
-// Whether the target's query holds the token; compares all of it, however early it differs.
+// The value of a key in the query of a target, "/live?token=abc"; empty where there is none.
+// Nothing is decoded.
+std::string_view query_value(std::string_view target, std::string_view key);
+
+// Compares all of both, however early they differ; an empty secret is none.
+bool same_secret(std::string_view given, std::string_view secret);
+
+// Whether the target's query holds the token.
 bool token_allowed(const Door& door, std::string_view target);
 
 // The path of a target, without its query.

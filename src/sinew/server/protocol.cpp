@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/base/error.h"
+#include "sinew/scene/laws.h"
 
 namespace sinew::server {
 namespace {
@@ -31,9 +32,10 @@ class Fields {
     if (!value->is_string()) refuse(fmt::format("'{}' is no text", key));
     return value->get<std::string>();
   }
-  bool flag(const char* key, bool otherwise) {
-    const auto* value = find(key, false);
-    if (value == nullptr) return otherwise;
+  bool has(const char* key) const { return message_.contains(key); }
+  bool flag(const char* key, std::optional<bool> otherwise = {}) {
+    const auto* value = find(key, !otherwise);
+    if (value == nullptr) return *otherwise;
     if (!value->is_boolean()) refuse(fmt::format("'{}' is neither true nor false", key));
     return value->get<bool>();
   }
@@ -119,6 +121,23 @@ Request request_of(const std::string& type, Fields& f) {
     return Command(Drag{which, f.point("point")});
   }
   if (type == "release") return Command(Release{hand()});
+  if (type == "ball") {
+    const double radius = f.number("radius", 0.0);
+    if (!f.has("point")) return Command(RemoveBall{});
+    return Command(MoveBall{f.point("point"), radius});
+  }
+  if (type == "cut") {
+    const double offset = f.number("offset", 0.0);
+    if (!f.has("normal")) return Command(SetCut{});
+    return Command(SetCut{{f.point("normal"), offset}});
+  }
+  if (type == "springs") return Command(SetSprings{f.flag("value")});
+  if (type == "compare") return Command(SetCompare{f.text("law", false)});
+  if (type == "open") {
+    Open open{f.text("scene", false), f.text("file", false)};
+    if (open.scene.empty() == open.file.empty()) refuse("give either 'scene' or 'file'");
+    return open;
+  }
   refuse("there is no message of this type");
 }
 
@@ -142,7 +161,7 @@ class Bytes {
 enum class Kind : std::uint16_t { topology = 1, frame = 2 };
 
 void header(Bytes& to, Kind kind, std::uint32_t revision, std::size_t nodes, std::uint64_t number,
-            double time, std::size_t extra) {
+            double time, std::size_t extra, std::size_t more) {
   for (const char c : {'S', 'N', 'V', 'W'}) to.value(c);
   to.value(protocol_version);
   to.value(kind);
@@ -151,7 +170,7 @@ void header(Bytes& to, Kind kind, std::uint32_t revision, std::size_t nodes, std
   to.value(number);
   to.value(time);
   to.value(static_cast<std::uint32_t>(extra));
-  to.value(std::uint32_t{0});
+  to.value(static_cast<std::uint32_t>(more));
 }
 constexpr std::size_t header_bytes = 40;
 
@@ -162,6 +181,13 @@ Json vector(const Vec3& v) {
 // JSON knows no infinity.
 Json finite_or_null(double v) {
   return std::isfinite(v) ? Json(v) : Json(nullptr);
+}
+
+Json sphere(const live::SphereStatus& s) {
+  return {{"center", vector(s.center)},
+          {"radius", s.radius},
+          {"force", vector(s.force)},
+          {"contacts", s.contacts}};
 }
 
 const char* law_name(Law law) {
@@ -197,30 +223,45 @@ Request parse_request(std::string_view text) {
 }
 
 std::string encode_topology(const live::Topology& t) {
-  Bytes b(header_bytes + 4 * (t.triangle.size() + t.rest.size()) + 2 * t.node.size());
-  header(b, Kind::topology, t.revision, t.node.size(), 0, 0.0, t.triangle.size() / 3);
+  Bytes b(header_bytes + 4 * (t.triangle.size() + t.rest.size() + t.spring.size()) +
+          2 * t.node.size());
+  header(b, Kind::topology, t.revision, t.node.size(), 0, 0.0, t.triangle.size() / 3,
+         t.spring.size() / 2);
   b.array(t.triangle);
   b.array(t.rest);
+  b.array(t.spring);
   b.array(t.region);
   b.array(t.pinned);
   return b.take();
 }
 
 std::string encode_frame(const live::Frame& f) {
-  Bytes b(header_bytes + 4 * (f.position.size() + f.value.size()));
+  constexpr std::size_t has_compared = 1;
+  constexpr std::size_t has_contacts = 2;
+  Bytes b(header_bytes + 4 * (f.position.size() + f.value.size() + f.compared.size()) +
+          f.contact.size());
   header(b, Kind::frame, f.revision, f.value.size(), f.number, f.time,
-         static_cast<std::size_t>(f.quantity));
+         static_cast<std::size_t>(f.quantity),
+         (f.compared.empty() ? 0 : has_compared) | (f.contact.empty() ? 0 : has_contacts));
   b.array(f.position);
   b.array(f.value);
+  b.array(f.compared);
+  b.array(f.contact);
   return b.take();
 }
 
-std::string hello_text(std::string_view version) {
-  return dump({{"type", "hello"}, {"protocol", protocol_version}, {"version", version}});
+std::string hello_text(std::string_view version, bool gallery) {
+  return dump({{"type", "hello"},
+               {"protocol", protocol_version},
+               {"version", version},
+               {"gallery", gallery}});
 }
 
-std::string role_text(bool controls, int viewers) {
-  return dump({{"type", "role"}, {"controls", controls}, {"viewers", viewers}});
+std::string role_text(bool controls, int viewers, std::string_view ticket) {
+  return dump({{"type", "role"},
+               {"controls", controls},
+               {"viewers", viewers},
+               {"ticket", controls ? ticket : ""}});
 }
 
 std::string error_text(std::string_view message) {
@@ -248,7 +289,16 @@ std::string scene_text(const live::Parameters& p, const live::Topology& t, std::
     all_quantities.push_back(
         {{"name", q.name}, {"title", q.title}, {"unit", q.unit}, {"signed", q.is_signed}});
   }
+  Json obstacles = Json::array();
+  for (const auto& o : p.obstacles) {
+    obstacles.push_back({{"name", o.name}, {"radius", o.radius}});
+  }
+  Json laws = Json::array();
+  for (const LawChoice& law : law_choices()) {
+    laws.push_back({{"name", law.name}, {"title", law.title}});
+  }
   Json scene = {{"type", "scene"},
+                {"opened", p.opened},
                 {"revision", t.revision},
                 {"changes", changes},
                 {"name", p.scene},
@@ -265,6 +315,15 @@ std::string scene_text(const live::Parameters& p, const live::Topology& t, std::
                 {"parts", std::move(parts)},
                 {"regions", t.regions},
                 {"quantities", std::move(all_quantities)}};
+  scene["probes"] = p.probes;
+  scene["obstacles"] = std::move(obstacles);
+  scene["laws"] = std::move(laws);
+  scene["compare"] = p.compare;
+  scene["springs_shown"] = p.springs_shown;
+  scene["cut"] = nullptr;
+  if (!p.cut.normal.isZero()) {
+    scene["cut"] = {{"normal", vector(p.cut.normal)}, {"offset", p.cut.offset}};
+  }
   scene["ground"] = nullptr;
   if (p.has_ground) {
     scene["ground"] = {{"point", vector(p.ground_point)}, {"normal", vector(p.ground_normal)}};
@@ -280,6 +339,12 @@ std::string status_text(const live::Status& s) {
                      {"target", vector(h.target)},
                      {"force", vector(h.force)}});
   }
+  Json probes = Json::array();
+  for (const Vec3& u : s.probes) probes.push_back(vector(u));
+  Json obstacles = Json::array();
+  for (const live::SphereStatus& o : s.obstacles) obstacles.push_back(sphere(o));
+  Json distance = nullptr;
+  if (s.distance) distance = {{"largest", s.distance->largest}, {"mean", s.distance->mean}};
   const Energies& e = s.energy;
   return dump({{"type", "status"},
                {"running", s.running},
@@ -310,6 +375,10 @@ std::string status_text(const live::Status& s) {
                {"contacts", s.contacts},
                {"inverted_tets", s.inverted_tets},
                {"hands", std::move(hands)},
+               {"probes", std::move(probes)},
+               {"obstacles", std::move(obstacles)},
+               {"ball", s.ball ? sphere(*s.ball) : Json(nullptr)},
+               {"distance", std::move(distance)},
                {"error", s.error},
                {"errors", s.errors}});
 }

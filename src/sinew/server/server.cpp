@@ -1,5 +1,5 @@
-// The one file that knows Boost.Beast. Everything here runs on the thread of Server::run(), but for
-// stop() and Impl::wake().
+// HTTP by Boost.Beast, which only this file and socket.cpp know. Everything here runs on the thread
+// of Server::run(), but for stop() and Impl::wake().
 #include "sinew/server/server.h"
 
 #include <fmt/format.h>
@@ -11,11 +11,13 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/http.hpp>
-#include <boost/beast/websocket.hpp>
-#include <vector>
+#include <cstdlib>
+#include <limits>
 
 #include "sinew/base/error.h"
-#include "sinew/server/viewer.h"
+#include "sinew/io/file_io.h"
+#include "sinew/server/hub.h"
+#include "sinew/server/socket.h"
 
 namespace sinew {
 extern const char page_html[];  // embedded: web/dist/index.html
@@ -27,13 +29,13 @@ namespace {
 namespace beast = boost::beast;
 namespace http = beast::http;
 namespace net = boost::asio;
-namespace websocket = beast::websocket;
 using tcp = net::ip::tcp;
 using Failure = beast::error_code;
 
 constexpr std::chrono::seconds http_timeout(10);
 constexpr unsigned most_header_bytes = 8192;
-constexpr int most_faults = 20;  // malformed messages before a socket is closed
+constexpr std::chrono::seconds upload_timeout(120);
+constexpr int most_uploads = 2;  // at a time
 
 // The page is one file that fetches nothing and talks to nobody but this server.
 constexpr const char* content_policy =
@@ -45,250 +47,150 @@ std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};
 }
 
-}  // namespace
-
-class Socket;
-
-// What all connections share.
-class Hub {
- public:
-  explicit Hub(const Options& options) : door{options.host, options.port, options.token} {}
-
-  void join(Socket* socket);
-  void leave(Socket* socket);
-  void take_controls(Socket* socket);
-  bool controls(const Socket* socket) const { return socket == controller_; }
-  void tell_roles();
-  void pump();
-  void close_all();
-
-  Door door;
-  int connections = 0;
-  std::unique_ptr<live::Runner> runner;  // null: the server is being taken down
-
- private:
-  std::vector<Socket*> sockets_;
-  Socket* controller_ = nullptr;
-};
-
-// One count of a connection, for as long as it lives.
-class Place {
- public:
-  explicit Place(Hub& hub) : hub_(&hub) { ++hub.connections; }
-  Place(Place&& other) noexcept : hub_(std::exchange(other.hub_, nullptr)) {}
-  Place(const Place&) = delete;
-  Place& operator=(const Place&) = delete;
-  Place& operator=(Place&&) = delete;
-  ~Place() {
-    if (hub_ != nullptr) --hub_->connections;
-  }
-
- private:
-  Hub* hub_;
-};
-
-// A browser at the other end of a WebSocket.
-class Socket : public std::enable_shared_from_this<Socket> {
- public:
-  Socket(Hub& hub, Place place, beast::tcp_stream&& stream)
-      : hub_(hub), place_(std::move(place)), stream_(std::move(stream)), viewer_(SINEW_VERSION) {}
-  ~Socket() { hub_.leave(this); }
-
-  void start(const http::request<http::empty_body>& request) {
-    beast::get_lowest_layer(stream_).expires_never();
-    beast::get_lowest_layer(stream_).socket().set_option(tcp::no_delay(true));
-    websocket::stream_base::timeout timeout =
-        websocket::stream_base::timeout::suggested(beast::role_type::server);
-    timeout.handshake_timeout = std::chrono::seconds(5);  // also of goodbyes
-    timeout.idle_timeout = std::chrono::seconds(30);
-    timeout.keep_alive_pings = true;
-    stream_.set_option(timeout);
-    websocket::permessage_deflate plain;
-    plain.server_enable = false;
-    stream_.set_option(plain);
-    stream_.auto_fragment(false);
-    stream_.write_buffer_bytes(65536);
-    stream_.read_message_max(most_message_bytes);
-    stream_.async_accept(request, [self = shared_from_this()](Failure failure) {
-      if (failure) return;
-      self->open_ = true;
-      self->hub_.join(self.get());
-      self->read();
-    });
-  }
-
-  Viewer& viewer() { return viewer_; }
-
-  // Sends what is next, unless something is still being sent.
-  void pump() {
-    if (!open_ || writing_) return;
-    std::optional<Outgoing> next = viewer_.next(hub_.runner->snapshot());
-    if (!next) return;
-    writing_ = true;
-    outgoing_ = std::move(*next);
-    stream_.binary(outgoing_.binary);
-    stream_.async_write(net::buffer(outgoing_.bytes),
-                        [self = shared_from_this()](Failure failure, std::size_t) {
-                          self->writing_ = false;
-                          if (failure) return self->drop();
-                          if (self->closing_) return self->say_goodbye();
-                          self->pump();
-                        });
-  }
-
-  void close(websocket::close_code why) {
-    if (!open_ || closing_) return;
-    closing_ = true;
-    why_ = why;
-    if (!writing_) say_goodbye();
-  }
-
- private:
-  void drop() {
-    open_ = false;
-    beast::get_lowest_layer(stream_).close();
-  }
-
-  void say_goodbye() {
-    open_ = false;
-    stream_.async_close(why_, [self = shared_from_this()](Failure) {});
-  }
-
-  void read() {
-    stream_.async_read(incoming_, [self = shared_from_this()](Failure failure, std::size_t) {
-      if (failure) {
-        self->open_ = false;
-        self->hub_.leave(self.get());
-        return;
-      }
-      if (!self->viewer_.may_speak(std::chrono::steady_clock::now())) {
-        self->close(websocket::close_code::policy_error);
-      } else if (!self->closing_) {
-        self->hear(beast::buffers_to_string(self->incoming_.data()));
-      }
-      self->incoming_.consume(self->incoming_.size());
-      self->pump();
-      self->read();
-    });
-  }
-
-  void hear(const std::string& text) {
-    try {
-      Request request = parse_request(text);
-      if (const auto* seen = std::get_if<Seen>(&request)) {
-        viewer_.seen(seen->frame);
-      } else if (std::holds_alternative<TakeControls>(request)) {
-        hub_.take_controls(this);
-      } else if (!hub_.controls(this)) {
-        viewer_.note(error_text("another browser has the controls"));
-      } else if (!hub_.runner->post(std::get<live::Command>(std::move(request)))) {
-        viewer_.note(error_text("the simulation is busy: the command was dropped"));
-      }
-    } catch (const Error& e) {
-      viewer_.note(error_text(e.message()));
-      if (++faults_ >= most_faults) close(websocket::close_code::policy_error);
-    }
-  }
-
-  Hub& hub_;
-  Place place_;
-  websocket::stream<beast::tcp_stream> stream_;
-  beast::flat_buffer incoming_;
-  Outgoing outgoing_;
-  Viewer viewer_;
-  bool open_ = false, writing_ = false, closing_ = false;
-  websocket::close_code why_ = websocket::close_code::normal;
-  int faults_ = 0;
-};
-
-void Hub::join(Socket* socket) {
-  sockets_.push_back(socket);
-  if (controller_ == nullptr) controller_ = socket;
-  tell_roles();
+bool wants_socket(const http::request<http::empty_body>& request) {
+  return request.method() == http::verb::get &&
+         http::token_list{request[http::field::connection]}.exists("upgrade") &&
+         beast::iequals(request[http::field::upgrade], "websocket");
 }
 
-void Hub::leave(Socket* socket) {
-  if (std::erase(sockets_, socket) == 0 || !runner) return;
-  if (controller_ == socket) {
-    for (int hand = 0; hand < live::most_hands; ++hand) runner->post(live::Release{hand});
-    controller_ = sockets_.empty() ? nullptr : sockets_.front();
-  }
-  tell_roles();
+// The page; while one works on it, what SINEW_PAGE names is read anew every time.
+std::string the_page() {
+  const char* other = std::getenv("SINEW_PAGE");
+  return other == nullptr ? page_html : io::read_file(other);
 }
-
-void Hub::take_controls(Socket* socket) {
-  controller_ = socket;
-  tell_roles();
-}
-
-void Hub::tell_roles() {
-  for (Socket* s : sockets_) {
-    s->viewer().note(role_text(s == controller_, static_cast<int>(sockets_.size())));
-    s->pump();
-  }
-}
-
-void Hub::pump() {
-  for (Socket* s : sockets_) s->pump();
-}
-
-void Hub::close_all() {
-  for (Socket* s : sockets_) s->close(websocket::close_code::going_away);
-}
-
-namespace {
 
 // A connection that has not (yet) become a WebSocket.
 class Visitor : public std::enable_shared_from_this<Visitor> {
  public:
   Visitor(Hub& hub, tcp::socket socket) : hub_(hub), place_(hub), stream_(std::move(socket)) {}
+  ~Visitor() { end_upload(); }
+  Visitor(const Visitor&) = delete;
+  Visitor& operator=(const Visitor&) = delete;
 
   void read() {
     parser_.emplace();
     parser_->header_limit(most_header_bytes);
-    parser_->body_limit(0);
+    parser_->body_limit(std::numeric_limits<std::uint64_t>::max());  // none is read by this one
     stream_.expires_after(http_timeout);
-    http::async_read(stream_, buffer_, *parser_,
-                     [self = shared_from_this()](Failure failure, std::size_t) {
-                       if (!failure) self->answer();
-                     });
+    http::async_read_header(stream_, buffer_, *parser_,
+                            [self = shared_from_this()](Failure failure, std::size_t) {
+                              if (!failure) self->answer();
+                            });
   }
 
  private:
   void answer() {
-    const auto request = parser_->release();
+    const auto& request = parser_->get();
     const std::string_view target = view(request.target());
     const std::string_view host = view(request[http::field::host]);
     const std::string_view path = path_of(target);
     keep_alive_ = request.keep_alive();
     head_ = request.method() == http::verb::head;
     if (!host_allowed(hub_.door, host)) {
-      return send(http::status::forbidden, "text/plain", "this name does not lead here\n");
+      return refuse(http::status::forbidden, "this name does not lead here");
     }
     if (!token_allowed(hub_.door, target)) {
-      return send(http::status::forbidden, "text/plain",
-                  "open the address that sinew view printed, with its token\n");
+      return refuse(http::status::forbidden,
+                    "open the address that sinew view printed, with its token");
     }
-    if (websocket::is_upgrade(request)) {
-      if (buffer_.size() > 0) {  // it would be lost: nobody speaks before the handshake is done
-        keep_alive_ = false;
-        return send(http::status::bad_request, "text/plain", "wait for the handshake\n");
-      }
-      if (path != "/live" || !origin_allowed(view(request[http::field::origin]), host)) {
-        return send(http::status::forbidden, "text/plain", "no socket for this page\n");
-      }
-      std::make_shared<Socket>(hub_, std::move(place_), std::move(stream_))->start(request);
-      return;
-    }
+    if (request.method() == http::verb::post && path == "/files") return receive(target, host);
+    if (!parser_->is_done()) return refuse(http::status::bad_request, "no body is expected here");
+    if (wants_socket(request)) return upgrade(path, host);
     if (request.method() != http::verb::get && !head_) {
-      return send(http::status::method_not_allowed, "text/plain", "only GET\n");
+      return refuse(http::status::method_not_allowed, "only GET");
     }
-    if (path == "/") return send(http::status::ok, "text/html; charset=utf-8", page_html);
+    try {
+      serve(path);
+    } catch (const Error& e) {
+      refuse(http::status::internal_server_error, e.message());
+    }
+  }
+
+  void upgrade(std::string_view path, std::string_view host) {
+    const auto& request = parser_->get();
+    if (buffer_.size() > 0) {  // it would be lost: nobody speaks before the handshake is done
+      return refuse(http::status::bad_request, "wait for the handshake");
+    }
+    if (path != "/live" || !origin_allowed(view(request[http::field::origin]), host)) {
+      return refuse(http::status::forbidden, "no socket for this page");
+    }
+    open_socket(hub_, std::move(place_), std::move(stream_), parser_->release());
+  }
+
+  void serve(std::string_view path) {
+    if (path == "/") return send(http::status::ok, "text/html; charset=utf-8", the_page());
     if (path == "/scene.toml") {
       return send(http::status::ok, "text/plain; charset=utf-8",
                   hub_.runner->snapshot().parameters->document);
     }
+    if (path == "/gallery.json") {
+      return send(http::status::ok, "application/json", hub_.library.gallery());
+    }
+    if (path == "/state.vtu") return send_state();
+    if (auto picture = hub_.library.picture(path)) {
+      return send(http::status::ok, "image/jpeg", std::move(*picture));
+    }
     send(http::status::not_found, "text/plain", "nothing here\n");
+  }
+
+  // The simulation's thread makes the file, this one sends it, and holds the connection after that.
+  void send_state() {
+    const auto executor = stream_.get_executor();
+    const bool posted = hub_.runner->post(
+        live::SaveState{[self = shared_from_this(), executor](std::string bytes) mutable {
+          net::post(executor, [self = std::move(self), bytes = std::move(bytes)]() mutable {
+            self->send(http::status::ok, "application/octet-stream", std::move(bytes));
+          });
+        }});
+    if (!posted) refuse(http::status::service_unavailable, "the simulation is busy");
+  }
+
+  // A file for the library, from the viewer that has the controls.
+  void receive(std::string_view target, std::string_view host) {
+    if (!origin_allowed(view(parser_->get()[http::field::origin]), host) ||
+        !hub_.has_ticket(target)) {
+      return refuse(http::status::forbidden, "only the viewer with the controls may give files");
+    }
+    if (hub_.uploads == most_uploads) {
+      return refuse(http::status::service_unavailable, "other files are being read: try again");
+    }
+    const auto length = parser_->content_length();
+    if (!length || *length > Library::most_file_bytes) {
+      return refuse(http::status::payload_too_large, "a file of at most 64 MiB, its length named");
+    }
+    uploading_ = true;
+    ++hub_.uploads;
+    name_ = query_value(target, "name");
+    body_.emplace(std::move(*parser_));
+    body_->body_limit(Library::most_file_bytes);
+    stream_.expires_after(upload_timeout);
+    http::async_read(stream_, buffer_, *body_,
+                     [self = shared_from_this()](Failure failure, std::size_t) {
+                       if (!failure) self->keep();
+                     });
+  }
+
+  void keep() {
+    const std::string bytes = std::move(body_->get().body());
+    body_.reset();
+    end_upload();
+    try {
+      hub_.library.keep(name_, bytes);
+      send(http::status::ok, "text/plain", "kept\n");
+    } catch (const Error& e) {
+      refuse(http::status::bad_request, std::string(e.message()) + "; " + e.remedy());
+    }
+  }
+
+  void end_upload() {
+    if (uploading_) --hub_.uploads;
+    uploading_ = false;
+  }
+
+  // Closes the connection afterwards: a body may follow that nobody wants to read.
+  void refuse(http::status status, const std::string& why) {
+    keep_alive_ = false;
+    send(status, "text/plain; charset=utf-8", why + "\n");
   }
 
   void send(http::status status, const char* type, std::string body) {
@@ -318,8 +220,10 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
+  std::optional<http::request_parser<http::string_body>> body_;
+  std::string name_;  // of the file that is being given
   std::optional<http::response<http::string_body>> response_;
-  bool keep_alive_ = false, head_ = false;
+  bool keep_alive_ = false, head_ = false, uploading_ = false;
 };
 
 }  // namespace
@@ -328,7 +232,7 @@ class Server::Impl {
  public:
   Impl(const Options& options, const Scene& scene)
       : most_connections_(options.most_connections),
-        hub_(options),
+        hub_({options.host, options.port, options.token}, options.scenes, options.gallery),
         acceptor_(io_),
         retry_(io_),
         goodbye_(io_) {

@@ -2,6 +2,7 @@
 // docs/protocol.md.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -16,6 +17,8 @@ struct Options {
   unsigned short port = 0;         // 0: any that is free
   std::string token;               // that every request has to name; empty: none
   int most_connections = 64;       // more are closed at once
+  std::filesystem::path scenes;    // folder of the gallery; empty: it has none
+  bool gallery = false;            // pages begin with the gallery
 };
 
 class Server {

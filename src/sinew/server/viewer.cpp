@@ -12,7 +12,7 @@ constexpr double most_credit = 600.0;
 std::optional<Outgoing> Viewer::next(const live::Snapshot& now) {
   if (!greeted_) {
     greeted_ = true;
-    return Outgoing{hello_text(version_)};
+    return Outgoing{hello_text(version_, gallery_)};
   }
   if (!notes_.empty()) {
     Outgoing out{std::move(notes_.front())};

@@ -20,7 +20,7 @@ struct Outgoing {
 
 class Viewer {
  public:
-  explicit Viewer(std::string version) : version_(std::move(version)) {}
+  Viewer(std::string version, bool gallery) : version_(std::move(version)), gallery_(gallery) {}
 
   // The next message, or nothing: everything is said, or the browser has not yet seen the last
   // `most_unseen` frames. Texts of note() come first, then what describes the scene, then the
@@ -38,7 +38,7 @@ class Viewer {
 
  private:
   std::string version_;
-  bool greeted_ = false;
+  bool gallery_, greeted_ = false;
   std::deque<std::string> notes_;
   std::uint32_t revision_ = 0;                          // of the topology sent
   std::shared_ptr<const live::Parameters> parameters_;  // sent

@@ -8,6 +8,7 @@
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/forces/loads.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/righting.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
@@ -36,9 +37,10 @@ void move_pins(const Model& model, State& state) {
   }
 }
 
-// What loads and pins put in over the step: their forces at its end along the way.
-double work_of_the_outside(const Model& model, const Field& before, const State& state,
-                           const Workspace& workspace) {
+// What loads, pins and obstacles put in since the time `since`: their forces at its end along the
+// way.
+double work_of_the_outside(const Model& model, const Field& before, double since,
+                           const State& state, const Workspace& workspace) {
   double work = 0.0;
   for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& force) {
     if (model.inverse_mass[uz(node)] > 0.0) {
@@ -49,6 +51,12 @@ double work_of_the_outside(const Model& model, const Field& before, const State&
     for (const Index node : pin.nodes) {
       work -= workspace.force[uz(node)].dot(state.position[uz(node)] - before[uz(node)]);
     }
+  }
+  if (!model.obstacles.empty()) {
+    const std::vector<Vec3> centers = obstacle_centers(model, since);
+    const auto readings = read_obstacles(model, state.position, state.time);
+    for (std::size_t c = 0; c < readings.size(); ++c)
+      work -= readings[c].force.dot(readings[c].center - centers[c]);
   }
   return work;
 }
@@ -115,9 +123,9 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
 }
 
 // Heat of dashpots and drag by the scheme's own weights, work along the way from `before`.
-void ImplicitStepper::account(const Field& before, double weight, State& state) {
+void ImplicitStepper::account(const Field& before, double since, double weight, State& state) {
   state.energy.dissipated += weight * damping_power(model_, before, state.half_velocity);
-  state.energy.work_in += work_of_the_outside(model_, before, state, workspace_);
+  state.energy.work_in += work_of_the_outside(model_, before, since, state, workspace_);
 }
 
 bool ImplicitStepper::sdirk2(double h, const ImplicitOptions& options, State& state,
@@ -130,14 +138,14 @@ bool ImplicitStepper::sdirk2(double h, const ImplicitOptions& options, State& st
   if (!solve(x, v, g * h, options, state, report)) return false;
   if (act(state.reactions)) return true;
   const Field v1 = state.half_velocity;
-  account(x, (1.0 - g) * h, state);
+  account(x, time, (1.0 - g) * h, state);
   const Field x1 = state.position;
   state.time = time + h;
   if (!solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
              g * h, options, state, report)) {
     return false;
   }
-  account(x1, g * h, state);
+  account(x1, time + g * h, g * h, state);
   return true;
 }
 
@@ -147,7 +155,7 @@ bool ImplicitStepper::backward_euler(double h, const ImplicitOptions& options, S
   const Field v = state.half_velocity;
   state.time += h;
   if (!solve(x, v, h, options, state, report)) return false;
-  account(x, h, state);
+  account(x, state.time - h, h, state);
   if (constraints_->empty()) return true;
   // The impulses of the ground and the limits work on the mean of the velocities before and after
   // the step, as in Verlet's balance: none where the body just rests.

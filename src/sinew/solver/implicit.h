@@ -71,7 +71,7 @@ class ImplicitStepper {
   bool sdirk2(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
   bool backward_euler(double h, const ImplicitOptions& options, State& state,
                       ImplicitReport& report);
-  void account(const Field& before, double weight, State& state);
+  void account(const Field& before, double since, double weight, State& state);
   bool solve(const Field& from, const Field& velocity, double h, const ImplicitOptions& options,
              State& state, ImplicitReport& report);
 

@@ -9,7 +9,7 @@
 #include "sinew/io/file_io.h"
 #include "sinew/scene/document.h"
 #include "sinew/scene/keys.h"
-#include "sinew/study/law.h"
+#include "sinew/scene/laws.h"
 
 namespace sinew::study {
 
@@ -257,12 +257,12 @@ Case load_case(const fs::path& folder, const std::string& name) {
   c.title = root.text("title", true);
   c.laws = root.texts("laws");
   for (const std::string& law : c.laws) {
-    std::vector<std::string> laws = names_of(study_laws());
-    if (find_study_law(law) == nullptr)
+    std::vector<std::string> laws = names_of(law_choices());
+    if (find_law(law) == nullptr)
       root.fail(*document.find("laws"),
                 fmt::format("unknown law '{}'{}", law, did_you_mean(law, laws)));
   }
-  if (c.laws.empty()) c.laws = names_of(study_laws());
+  if (c.laws.empty()) c.laws = names_of(law_choices());
   c.variants = read_choices(root, "variant");
   c.meshes = read_choices(root, "mesh");
   for (const DocValue& item : root.items("quantity")) c.quantities.push_back(read_quantity(item));

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sinew/study/law.h"
+#include "sinew/scene/laws.h"
 #include "sinew/study/measure.h"
 
 namespace sinew::study {
@@ -18,7 +18,7 @@ constexpr double exact = 1e-6;  // errors that no discretisation explains
 
 struct Plan {
   const Case* definition;
-  const StudyLaw* law;
+  const LawChoice* law;
   const Choice* variant;
   std::size_t mesh;
 };
@@ -37,7 +37,7 @@ std::vector<Plan> plan_case(const Case& c, const SuiteOptions& options) {
     if (!referred) continue;
     for (std::size_t mesh = 0; mesh < c.meshes.size(); ++mesh) {
       if (mesh > 0 && (options.quick || (c.meshes[mesh].full && !options.full))) continue;
-      for (const StudyLaw& law : study_laws()) {
+      for (const LawChoice& law : law_choices()) {
         if (std::find(c.laws.begin(), c.laws.end(), law.name) == c.laws.end()) continue;
         if (!wanted(options, law.name) || (law.classic && mesh > 0)) continue;
         plans.push_back({&c, &law, &variant, mesh});
@@ -66,7 +66,7 @@ Value judged(const Plan& plan, const Quantity& q, const Reference& reference, do
   v.reference = reference.value;
   v.reference_error = reference.error;
   v.error = (value - reference.value) / (q.scale > 0.0 ? q.scale : std::abs(reference.value));
-  if (plan.law->name == study_laws().front().name) v.limit = limit_of(q, *plan.variant, plan.mesh);
+  if (plan.law->name == law_choices().front().name) v.limit = limit_of(q, *plan.variant, plan.mesh);
   v.holds = !v.limit || std::abs(v.error) <= *v.limit;
   return v;
 }
@@ -143,7 +143,7 @@ bool both_exact(const CaseResult& result, const Value& value) {
 }  // namespace
 
 bool Trial::holds() const {
-  return law != study_laws().front().name || (failure.empty() && inverted_tets == 0);
+  return law != law_choices().front().name || (failure.empty() && inverted_tets == 0);
 }
 
 bool SuiteResult::holds() const {

@@ -8,7 +8,7 @@
 #include "sinew/report/html.h"
 #include "sinew/report/table.h"
 #include "sinew/report/text.h"
-#include "sinew/study/law.h"
+#include "sinew/scene/laws.h"
 #include "sinew/study/validate.h"
 
 namespace sinew::study {
@@ -24,14 +24,14 @@ constexpr const char* network = "neo-hookean";
 constexpr const char* fem = "fem";
 
 struct Column {
-  const StudyLaw* law;
+  const LawChoice* law;
   std::size_t mesh;
 };
 
 // Law by law, from coarse to fine: those that have a trial.
 std::vector<Column> columns_of(const CaseResult& result) {
   std::vector<Column> columns;
-  for (const StudyLaw& law : study_laws())
+  for (const LawChoice& law : law_choices())
     for (std::size_t mesh = 0; mesh < result.definition.meshes.size(); ++mesh)
       if (std::any_of(result.trials.begin(), result.trials.end(),
                       [&](const Trial& t) { return t.law == law.name && t.mesh_number == mesh; }))
@@ -147,11 +147,11 @@ Table trials_table(const CaseResult& result) {
 Table summary_table(const SuiteResult& result) {
   Table table;
   table.columns = {{"case", Align::left}, {"tets"}};
-  for (const StudyLaw& law : study_laws()) table.columns.push_back({law.title});
+  for (const LawChoice& law : law_choices()) table.columns.push_back({law.title});
   table.columns.push_back({"thresholds", Align::left});
   for (const CaseResult& r : result.cases) {
     std::vector<Cell> row = {r.definition.name, fmt::format("{}", r.trials.front().tets)};
-    for (const StudyLaw& law : study_laws())
+    for (const LawChoice& law : law_choices())
       row.emplace_back(size_text(median_error(r, law.name, 0)));
     int limits = 0, missed = 0;
     for (const Value& v : r.values) {
@@ -164,7 +164,7 @@ Table summary_table(const SuiteResult& result) {
     table.rows.push_back(std::move(row));
   }
   std::vector<Cell> all = {"all values", ""};
-  for (const StudyLaw& law : study_laws())
+  for (const LawChoice& law : law_choices())
     all.emplace_back(size_text(median_error_coarsest(result, law.name)));
   table.rows.push_back(std::move(all));
   return table;
@@ -186,7 +186,7 @@ std::string verdict(const SuiteResult& result) {
 std::vector<std::string> complaints(const CaseResult& r) {
   std::vector<std::string> list;
   const auto name = [](const Trial& t) {
-    std::string text = find_study_law(t.law)->title;
+    std::string text = find_law(t.law)->title;
     for (const std::string& part : {t.variant, t.mesh})
       if (!part.empty()) text += ", " + part;
     return text;
@@ -210,7 +210,7 @@ report::Plot convergence_plot(const CaseResult& result) {
   plot.x = {"tets", true, {}, {}};
   plot.y = {"median error", true, {}, {}};
   int style = 0;
-  for (const StudyLaw& law : study_laws()) {
+  for (const LawChoice& law : law_choices()) {
     report::Series series;
     series.name = law.title;
     series.style = style++;
@@ -230,7 +230,7 @@ report::BarChart variants_chart(const CaseResult& result) {
   chart.title = "by variant, coarsest mesh";
   chart.y = {"median error [%]", false, {}, {}};
   int style = 0;
-  for (const StudyLaw& law : study_laws()) {
+  for (const LawChoice& law : law_choices()) {
     report::BarSeries bars;
     bars.name = law.title;
     bars.style = style++;
@@ -319,7 +319,7 @@ nlohmann::ordered_json to_json(const SuiteResult& result) {
         {"title", r.definition.title}, {"source", r.definition.source}, {"trials", trials}};
   }
   nlohmann::ordered_json medians = nlohmann::ordered_json::object();
-  for (const StudyLaw& law : study_laws())
+  for (const LawChoice& law : law_choices())
     medians[law.name] = number(median_error_coarsest(result, law.name));
   return {{"version", SINEW_VERSION},  {"holds", result.holds()},    {"stopped", result.stopped},
           {"seconds", result.seconds}, {"median_coarsest", medians}, {"cases", cases}};

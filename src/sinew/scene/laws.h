@@ -1,12 +1,12 @@
-// The laws that a study compares, as overrides of a scene.
+// The laws that studies and the live view compare, as overrides of a scene.
 #pragma once
 
 #include <string>
 #include <vector>
 
-namespace sinew::study {
+namespace sinew {
 
-struct StudyLaw {
+struct LawChoice {
   std::string name;              // in case.toml, on the command line, in validation.json
   std::string title;             // in tables
   std::vector<std::string> set;  // keys of a body
@@ -14,8 +14,8 @@ struct StudyLaw {
 };
 
 // neo-hookean first: the one under test; then fem: linear tets, the one to beat.
-inline const std::vector<StudyLaw>& study_laws() {
-  static const std::vector<StudyLaw> laws = {
+inline const std::vector<LawChoice>& law_choices() {
+  static const std::vector<LawChoice> laws = {
       {"neo-hookean", "network", {"law=neo-hookean"}, false},
       {"fem", "linear FEM", {"law=neo-hookean", "beta=1", "volume=tet"}, false},
       {"calibrated", "calibrated", {"law=calibrated"}, true},
@@ -26,10 +26,10 @@ inline const std::vector<StudyLaw>& study_laws() {
 }
 
 // Null where there is none of that name.
-inline const StudyLaw* find_study_law(const std::string& name) {
-  for (const StudyLaw& law : study_laws())
+inline const LawChoice* find_law(const std::string& name) {
+  for (const LawChoice& law : law_choices())
     if (law.name == name) return &law;
   return nullptr;
 }
 
-}  // namespace sinew::study
+}  // namespace sinew

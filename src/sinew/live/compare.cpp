@@ -1,0 +1,137 @@
+// Simulation's other body: the same scene with another law, in lock-step.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <type_traits>
+
+#include "sinew/base/error.h"
+#include "sinew/live/simulation.h"
+#include "sinew/scene/laws.h"
+
+namespace sinew::live {
+namespace {
+
+// What makes a law: the other body keeps its own.
+bool is_of_law(const SetMaterial& c) {
+  return c.key == "law" || c.key == "volume" || c.key == "beta";
+}
+
+std::string names_of_laws() {
+  std::string names;
+  for (const LawChoice& law : law_choices()) names += (names.empty() ? "" : ", ") + law.name;
+  return names;
+}
+
+Scene with_law(const Scene& scene, const LawChoice& law) {
+  std::vector<std::string> overrides;
+  for (const SceneBody& body : scene.bodies) {
+    for (const std::string& set : law.set) {
+      overrides.push_back("body." + body.name + "." + set);
+      // A region with a law of its own gives it up, too.
+      for (const SceneRegion& r : body.regions) {
+        overrides.push_back("body." + body.name + ".region." + r.name + "." + set);
+      }
+    }
+  }
+  return parse_scene(scene.document, scene.file, scene.base, overrides);
+}
+
+}  // namespace
+
+void Simulation::act(const SetCompare& c) {
+  if (c.law.empty()) {
+    other_.reset();
+    compare_.clear();
+    ahead_ = false;
+    remember_parameters();
+    return;
+  }
+  const LawChoice* law = find_law(c.law);
+  if (law == nullptr) {
+    throw Error(ErrorKind::usage, fmt::format("there is no law '{}' to compare with", c.law),
+                "one of " + names_of_laws());
+  }
+  auto other = std::make_unique<Simulation>(with_law(scene_, *law));
+  other_.reset();
+  // Both begin anew from this state: with the same law they would take the same steps.
+  rebuild(scene_, &run_.state);
+  other->rebuild(other->scene_, &run_.state);
+  other->hands_ = hands_;
+  other->ball_ = ball_;
+  const double stable = other->run_.stable_step > 0.0 ? other->run_.stable_step : no_limit;
+  other->hands_.hold(*other->model_, other->run_.state, stable);
+  other->ball_.hold(*other->model_, other->run_.state, stable);
+  other->topology_ = topology_;
+  other_ = std::move(other);
+  compare_ = c.law;
+  ahead_ = false;
+  note_pair();
+  remember_parameters();
+}
+
+// Passes on what concerns both bodies. Where the other cannot follow, it goes.
+void Simulation::tell_other(const Command& command) {
+  try {
+    std::visit(
+        [&](const auto& c) {
+          using C = std::decay_t<decltype(c)>;
+          constexpr bool of_both = std::is_same_v<C, Reset> || std::is_same_v<C, SetMaterial> ||
+                                   std::is_same_v<C, SetStepping> ||
+                                   std::is_same_v<C, SetGravity> || std::is_same_v<C, Grab> ||
+                                   std::is_same_v<C, Drag> || std::is_same_v<C, Release> ||
+                                   std::is_same_v<C, MoveBall> || std::is_same_v<C, RemoveBall>;
+          if constexpr (std::is_same_v<C, SetMaterial>) {
+            if (!is_of_law(c)) other_->act(c);
+          } else if constexpr (of_both) {
+            other_->act(c);
+          }
+          if constexpr (std::is_same_v<C, Reset>) note_pair();
+        },
+        command);
+  } catch (const Error& e) {
+    act(SetCompare{});
+    report(Error(e.kind(), "the compared body: " + e.message(), e.remedy(), e.location()));
+  }
+}
+
+// Steps the other to the time of this one. False where there is no time left for that.
+bool Simulation::catch_up(Clock::time_point deadline, const std::atomic<bool>* hurry) {
+  if (!other_) return true;
+  const std::uint32_t errors = other_->errors_;
+  const double close = 1e-9 * std::max(1.0, time());
+  while (other_->time() < time() - close) {
+    // The rest of a frame where this one has finished it, a step where this one has taken one.
+    const bool finished = other_->steps(deadline, hurry, !ahead_);
+    if (other_->errors_ != errors) {
+      const std::string what = other_->error_;
+      act(SetCompare{});
+      running_ = false;
+      report(Error(ErrorKind::diverged, "the compared body: " + what));
+      return true;
+    }
+    if (ahead_ && !finished) return false;
+  }
+  if (ahead_) {
+    other_->hands_.follow(*other_->model_, other_->run_.state, size());
+    other_->ball_.follow(*other_->model_, other_->run_.state, 1.0 / frames_per_second);
+  }
+  note_pair();
+  return true;
+}
+
+void Simulation::note_pair() {
+  pair_.mine = run_.state.position;
+  pair_.others = other_->run_.state.position;
+}
+
+// Simulated seconds per second of wall time that the steps alone would allow.
+double Simulation::capacity() const {
+  if (last_speed_.wall == 0.0) return 0.0;
+  double needed = last_speed_.wall / last_speed_.simulated;
+  if (other_ && other_->last_speed_.simulated > 0.0) {
+    needed += other_->last_speed_.wall / other_->last_speed_.simulated;
+  }
+  return 1.0 / needed;
+}
+
+}  // namespace sinew::live

@@ -1,0 +1,67 @@
+#include "sinew/live/look.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/obstacles.h"
+
+namespace sinew::live {
+namespace {
+// A node is on the ground where it is no further from it than this share of the body's size.
+constexpr double touch = 1e-5;
+}  // namespace
+
+std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& nodes) {
+  std::vector<float> out(3 * nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      out[3 * i + c] = static_cast<float>(x[uz(nodes[i])][static_cast<Eigen::Index>(c)]);
+    }
+  }
+  return out;
+}
+
+std::vector<std::uint8_t> find_contacts(const Model& model, const State& state,
+                                        const Topology& topology) {
+  if (!model.ground && model.obstacles.empty()) return {};
+  const std::vector<Vec3> centers = obstacle_centers(model, state.time);
+  std::vector<std::uint8_t> marks(topology.node.size(), 0);
+  parallel_for(static_cast<Index>(marks.size()), [&](Index i) {
+    const auto n = uz(topology.node[uz(i)]);
+    const Vec3& x = state.position[n];
+    bool touches = false;
+    if (model.ground) {
+      const double height = (x - model.ground->point).dot(model.ground->normal);
+      touches = height <= touch * static_cast<double>(topology.diagonal);
+    }
+    const bool on_surface = n < model.surface_share.size() && model.surface_share[n] > 0.0;
+    for (std::size_t c = 0; c < centers.size() && on_surface; ++c) {
+      touches = touches || (x - centers[c]).norm() < model.obstacles[c].radius;
+    }
+    marks[uz(i)] = touches ? 1 : 0;
+  });
+  if (std::find(marks.begin(), marks.end(), 1) == marks.end()) return {};
+  return marks;
+}
+
+std::vector<float> distances(const std::vector<float>& a, const std::vector<float>& b) {
+  std::vector<float> out(a.size() / 3);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    out[i] =
+        std::hypot(a[3 * i] - b[3 * i], a[3 * i + 1] - b[3 * i + 1], a[3 * i + 2] - b[3 * i + 2]);
+  }
+  return out;
+}
+
+Distance distance_between(const std::vector<Vec3>& a, const std::vector<Vec3>& b, Index count) {
+  Distance d;
+  for (Index i = 0; i < count; ++i) {
+    const double r = (a[uz(i)] - b[uz(i)]).norm();
+    d.largest = std::max(d.largest, r);
+    d.mean += r / static_cast<double>(count);
+  }
+  return d;
+}
+
+}  // namespace sinew::live

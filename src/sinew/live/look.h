@@ -1,0 +1,28 @@
+// What frames hold beside a quantity: positions as floats, who touches what, how far bodies are
+// apart.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "sinew/live/frame.h"
+#include "sinew/live/topology.h"
+#include "sinew/model/state.h"
+
+namespace sinew::live {
+
+// x of these nodes as floats [m] (3 a node).
+std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& nodes);
+
+// 1 for every node shown that lies on the ground or is pushed by an obstacle; empty where none
+// does.
+std::vector<std::uint8_t> find_contacts(const Model& model, const State& state,
+                                        const Topology& topology);
+
+// |a - b| of points [m], three coordinates each.
+std::vector<float> distances(const std::vector<float>& a, const std::vector<float>& b);
+
+// Over the first `count` nodes.
+Distance distance_between(const std::vector<Vec3>& a, const std::vector<Vec3>& b, Index count);
+
+}  // namespace sinew::live

@@ -1,0 +1,235 @@
+// What a live simulation does when it is told something.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "sinew/base/error.h"
+#include "sinew/forces/terms.h"
+#include "sinew/live/simulation.h"
+#include "sinew/run/recorder.h"
+
+namespace sinew::live {
+namespace {
+
+constexpr std::array<std::string_view, 13> material_keys = {
+    "law",  "young",         "poisson",        "density", "damping", "damping_ratio", "viscosity",
+    "drag", "stretch_limit", "compress_limit", "volume",  "beta",    "volume_limit"};
+constexpr std::array<std::string_view, 7> stepping_keys = {
+    "stepper", "scheme", "dt", "substeps", "precision", "tolerance", "safety"};
+
+template <std::size_t N>
+void require_key(const std::array<std::string_view, N>& keys, const std::string& key) {
+  if (std::find(keys.begin(), keys.end(), key) != keys.end()) return;
+  throw Error(ErrorKind::usage, fmt::format("'{}' cannot be changed while it runs", key),
+              fmt::format("one of {}", fmt::join(keys, ", ")));
+}
+
+// A value goes into the scene's document as TOML: a number or a word, and nothing else.
+void require_plain(const std::string& value) {
+  const bool plain = !value.empty() && value.size() <= 40 &&
+                     value.find_first_not_of(
+                         "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                         "0123456789+-._") == std::string::npos;
+  if (!plain) throw Error(ErrorKind::usage, "the value is no number and no word", "such as 15e3");
+}
+
+void require_point(const Vec3& point) {
+  if (!point.allFinite() || point.cwiseAbs().maxCoeff() > 1e6) {
+    throw Error(ErrorKind::usage, "the point is not within 1e6 m", "give x, y, z in metres");
+  }
+}
+
+Scene with(const Scene& scene, const std::vector<std::string>& overrides) {
+  return parse_scene(scene.document, scene.file, scene.base, overrides);
+}
+
+}  // namespace
+
+void Simulation::act(const Play& c) {
+  running_ = c.running;
+}
+
+void Simulation::act(const Advance& c) {
+  running_ = false;
+  if (!c.frame) return take_step();
+  while (!advance(Clock::now() + std::chrono::seconds(1)) && error_.empty()) {
+  }
+}
+
+void Simulation::act(const Reset&) {
+  let_go();
+  rebuild(scene_, nullptr);
+}
+
+// Nothing of the scene before is touched until the new one stands.
+void Simulation::act(const Load& c) {
+  const Hands hands = std::exchange(hands_, {});
+  const Ball ball = std::exchange(ball_, {});
+  try {
+    rebuild(c.scene, nullptr);
+  } catch (...) {
+    hands_ = hands;
+    ball_ = ball;
+    throw;
+  }
+  running_ = false;
+  other_.reset();
+  compare_.clear();
+  ++opened_;
+  show({}, false);
+}
+
+void Simulation::show(const Cut& cut, bool springs) {
+  cut_ = cut;
+  springs_ = springs;
+  topology_ = std::make_shared<Topology>(make_topology(*model_, ++revision_, cut_, springs_));
+  if (other_) other_->topology_ = topology_;
+  remember_parameters();
+}
+
+void Simulation::act(const SetCut& c) {
+  require_point(c.cut.normal);
+  if (!std::isfinite(c.cut.offset)) {
+    throw Error(ErrorKind::usage, "the offset is no finite number", "give it in metres");
+  }
+  show(c.cut, springs_);
+}
+
+void Simulation::act(const SetSprings& c) {
+  show(cut_, c.shown);
+}
+
+void Simulation::act(const SaveState& c) {
+  measure_energies(*model_, run_.state, stepping_->workspace());  // fills what the file holds
+  c.done(format_frame(*model_, run_, stepping_->workspace(), io::VtuEncoding::zlib));
+}
+
+namespace {
+// Overrides that give a key this value in a body or region, or all of them.
+std::vector<std::string> material_overrides(const Scene& scene, const SetMaterial& c) {
+  std::vector<std::string> overrides;
+  bool found = false;
+  for (const SceneBody& body : scene.bodies) {
+    if (!c.body.empty() && body.name != c.body) continue;
+    found = found || c.region.empty();
+    const std::string at = "body." + body.name + ".";
+    if (c.region.empty()) overrides.push_back(at + c.key + "=" + c.value);
+    for (const SceneRegion& region : body.regions) {
+      if (!c.region.empty() && region.name != c.region) continue;
+      found = true;
+      overrides.push_back(at + "region." + region.name + "." + c.key + "=" + c.value);
+    }
+  }
+  if (!found) {
+    throw Error(ErrorKind::usage, "the scene has no such body or region",
+                "name one that the message 'scene' lists");
+  }
+  return overrides;
+}
+}  // namespace
+
+void Simulation::act(const SetMaterial& c) {
+  require_key(material_keys, c.key);
+  require_plain(c.value);
+  change(material_overrides(scene_, c));
+}
+
+void Simulation::act(const SetStepping& c) {
+  require_key(stepping_keys, c.key);
+  require_plain(c.value);
+  change({c.key + "=" + c.value});
+}
+
+void Simulation::act(const SetGravity& c) {
+  if (!c.gravity.allFinite() || c.gravity.norm() > 1e4) {
+    throw Error(ErrorKind::usage, "gravity is not within 1e4 m/s2", "the earth's is 9.81 m/s2");
+  }
+  // The forces take it from the model in every step: nothing has to be built for it.
+  scene_ = with(scene_,
+                {fmt::format("gravity=[{},{},{}]", c.gravity.x(), c.gravity.y(), c.gravity.z())});
+  stepped_.gravity = c.gravity;
+  model_->gravity = c.gravity;
+  remember_parameters();
+}
+
+void Simulation::act(const SetTimeScale& c) {
+  if (!(c.scale >= 1e-3 && c.scale <= 100.0)) {
+    throw Error(ErrorKind::usage, "the time scale is not from 0.001 to 100", "1 is real time");
+  }
+  time_scale_ = c.scale;
+}
+
+void Simulation::act(const SetQuantity& c) {
+  quantity_ = c.quantity;
+}
+
+namespace {
+void require_hand(int hand) {
+  if (hand >= 0 && hand < most_hands) return;
+  throw Error(ErrorKind::usage, "no such hand", fmt::format("from 0 to {}", most_hands - 1));
+}
+}  // namespace
+
+void Simulation::act(const Grab& c) {
+  require_hand(c.hand);
+  require_point(c.point);
+  if (c.node < 0 || uz(c.node) >= topology_->node.size()) {
+    throw Error(ErrorKind::usage, "no such node of the surface",
+                fmt::format("from 0 to {}", topology_->node.size() - 1));
+  }
+  if (!(c.radius >= 0.0 && c.radius <= 1e6)) {
+    throw Error(ErrorKind::usage, "the radius is not from 0 to 1e6 m", "0 for the usual one");
+  }
+  const double usual = std::max(1.7 * static_cast<double>(topology_->edge),
+                                0.04 * static_cast<double>(topology_->diagonal));
+  hands_.grab(*model_, run_.state, c.hand, topology_->node[uz(c.node)], c.point,
+              c.radius > 0.0 ? c.radius : usual);
+}
+
+void Simulation::act(const Drag& c) {
+  require_hand(c.hand);
+  require_point(c.point);
+  hands_.drag(*model_, run_.state, c.hand, c.point, size());
+}
+
+void Simulation::act(const Release& c) {
+  require_hand(c.hand);
+  hands_.release(*model_, run_.state, c.hand);
+}
+
+void Simulation::act(const MoveBall& c) {
+  require_point(c.point);
+  if (!(c.radius >= 0.0 && c.radius <= 10.0 * size())) {
+    throw Error(ErrorKind::usage, "the radius is not from 0 to ten times the body's size",
+                "0 for the usual one");
+  }
+  const double usual = ball_.is_there() ? ball_.radius() : 0.1 * size();
+  ball_.move(*model_, run_.state, c.point, c.radius > 0.0 ? c.radius : usual, size());
+}
+
+void Simulation::act(const RemoveBall&) {
+  ball_.remove(*model_, run_.state);
+}
+
+// The scene with other values, going on from where the nodes are.
+void Simulation::change(const std::vector<std::string>& overrides) {
+  const State keep = run_.state;
+  const Scene changed = with(scene_, overrides);
+  try {
+    rebuild(changed, &keep);
+  } catch (const Error& e) {
+    // A given step that the new material is too stiff for is no reason to refuse the material.
+    const bool asked = std::any_of(overrides.begin(), overrides.end(), [](const std::string& o) {
+      return o.starts_with("dt=") || o.starts_with("substeps=");
+    });
+    if (e.kind() != ErrorKind::unstable || asked) throw;
+    rebuild(with(changed, {"dt=auto"}), &keep);
+  }
+}
+
+}  // namespace sinew::live

@@ -1,0 +1,78 @@
+"""sinew view: what it prints, what it opens, how it ends. The page has tests of its own."""
+
+import contextlib
+import json
+import re
+import signal
+import subprocess
+import unittest
+import urllib.request
+
+from cli_support import BIN, INPUT, IO, SCENES, USAGE, CliTest
+
+
+class ViewTest(CliTest):
+    @contextlib.contextmanager
+    def view(self, *args):
+        """The address of a `sinew view` that is ended by Ctrl-C afterwards, with exit code 0."""
+        process = subprocess.Popen([BIN, "view", "--port", "0", *map(str, args)], cwd=self.dir,
+                                   stdout=subprocess.PIPE, text=True)
+        try:
+            yield process.stdout.readline().strip()
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(timeout=20), 0)
+        finally:
+            process.kill()
+            process.stdout.close()
+            process.wait()
+
+    def get(self, url, path=""):
+        with urllib.request.urlopen(url + path, timeout=20) as answer:
+            return answer.read().decode("utf-8", "replace")
+
+    def test_a_scene(self):
+        with self.view(SCENES / "beam.toml", "--set", "beam.young=33e3", "--quiet") as url:
+            self.assertRegex(url, r"^http://127\.0\.0\.1:\d+/$")
+            self.assertIn("<!doctype html>", self.get(url))
+            self.assertIn("young = 33000", self.get(url, "scene.toml"))
+            self.assertIn("<VTKFile", self.get(url, "state.vtu"))
+
+    def test_without_a_scene_the_gallery(self):
+        with self.view() as url:
+            names = [scene["name"] for scene in json.loads(self.get(url, "gallery.json"))]
+            self.assertIn("beam", names)
+            self.assertIn("liver", names)
+
+    def test_another_gallery(self):
+        scene = self.write("own/mine.toml", '[body.a]\nshape = "box"\n[pin.p]\nselect = {side="+y"}\n')
+        self.write("own/broken.toml", "[")
+        with self.view(scene, "--scenes", "own") as url:
+            names = [scene["name"] for scene in json.loads(self.get(url, "gallery.json"))]
+            self.assertEqual(names, ["mine"])
+        error = self.run_sinew("view", "--scenes", "own", "--port", 0, code=USAGE).stderr
+        self.assertIn("name a scene", error)
+
+    def test_a_mesh_alone(self):
+        with self.view(SCENES / "meshes/liver-10mm.mesh", "--set", "liver-10mm.young=7e3") as url:
+            scene = self.get(url, "scene.toml")
+            self.assertTrue(re.search(r"young = 7000", scene), scene)
+            self.assertIn("0.001", scene)
+
+    def test_other_machines_need_the_token(self):
+        with self.view(SCENES / "beam.toml", "--host", "0.0.0.0") as url:
+            self.assertRegex(url, r"\?token=[0-9a-f]{32}$")
+            self.assertIn("<!doctype html>", self.get(url))
+
+    def test_what_cannot_be_shown(self):
+        bad = self.write("bad.toml", "[body.a]\nshape = \"box\"\nyoung = -1\n")
+        self.assertIn("bad.toml:3", self.run_sinew("view", bad, code=INPUT).stderr)
+        self.assertIn("missing", self.run_sinew("view", "missing.vtu", code=None).stderr)
+        self.run_sinew("view", SCENES / "beam.toml", "--port", "70000", code=USAGE)
+        with self.view(SCENES / "beam.toml") as url:
+            port = url.split(":")[2].strip("/")
+            error = self.run_sinew("view", SCENES / "beam.toml", "--port", port, code=IO).stderr
+            self.assertIn("--port 0", error)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,129 @@
+// The rigid spheres: obstacles of the scene and the ball, where the simulation has them.
+import * as THREE from "three";
+import { si } from "./format";
+import { glass, GLASS_ORDER, nearestOnly } from "./glass";
+import { Label } from "./labels";
+import type { ObstacleInfo, SphereStatus, Status, Vec } from "./protocol";
+import type { Stage } from "./stage";
+import { Track } from "./track";
+
+const LEAST_FORCE = 1e-3; // [N] that is worth a label
+const GROWTH = 0.3; // share of the way to another radius, a picture
+const SHAPE = new THREE.SphereGeometry(1, 64, 40);
+
+/** A sphere with its force, and once more beside a compared body. */
+class Sphere {
+  readonly group = new THREE.Group();
+  readonly twin: THREE.Group;
+  private readonly track = new Track();
+  private readonly label: Label;
+
+  constructor(labels: HTMLElement, className: string, materials: THREE.Material[], private radius: number) {
+    materials.forEach((material, i) => {
+      const mesh = new THREE.Mesh(SHAPE, material);
+      mesh.castShadow = i === 0;
+      mesh.receiveShadow = true;
+      // The last one is what is seen; before it, what hides its far side.
+      mesh.renderOrder = material.transparent ? GLASS_ORDER + 2 + i : 0;
+      this.group.add(mesh);
+    });
+    this.group.scale.setScalar(radius);
+    this.twin = this.group.clone();
+    this.group.visible = this.twin.visible = false;
+    this.label = new Label(labels, className);
+  }
+
+  hear(status: SphereStatus, time: number): void {
+    this.track.hear(status.center, time);
+    this.radius = status.radius;
+    const force = Math.hypot(...status.force);
+    this.label.write(force < LEAST_FORCE ? "" : si(force, "N", force < 1 ? 2 : 3));
+  }
+
+  /** `beside`: where the twin is, from it; zero: there is none. Returns whether it looks different. */
+  update(stage: Stage, time: number, now: number, beside: THREE.Vector3): boolean {
+    if (!this.track.known) return false;
+    const appears = !this.group.visible;
+    this.group.visible = true;
+    const moved = this.track.follow(this.group.position, time, now, this.radius);
+    const grows = Math.abs(this.radius / this.group.scale.x - 1) > 0.01;
+    if (grows) this.group.scale.setScalar(THREE.MathUtils.lerp(this.group.scale.x, this.radius, GROWTH));
+    this.twin.scale.copy(this.group.scale);
+    this.twin.visible = beside.lengthSq() > 0;
+    this.twin.position.copy(this.group.position).add(beside);
+    const pixels = this.radius / stage.metresPerPixel();
+    this.label.place(stage, this.group.position, 0.74 * pixels + 6, -0.74 * pixels - 20);
+    return moved || grows || appears;
+  }
+
+  remove(): void {
+    this.label.remove();
+    this.group.removeFromParent();
+    this.twin.removeFromParent();
+  }
+}
+
+export class Spheres {
+  private readonly group = new THREE.Group();
+  private obstacles: Sphere[] = [];
+  private ball: Sphere | null = null;
+  private known = "";
+  private readonly steel = new THREE.MeshPhysicalMaterial({
+    color: 0x8ea2b4,
+    roughness: 0.38,
+    clearcoat: 0.7,
+    clearcoatRoughness: 0.25,
+  });
+  // One has to see what the ball does to the tissue behind it.
+  private readonly amber = [nearestOnly(), glass({ color: 0xffc763, clear: 0.34, rim: 0.95 })];
+
+  constructor(
+    private readonly stage: Stage,
+    private readonly labels: HTMLElement,
+  ) {
+    stage.scene.add(this.group);
+  }
+
+  /** Where the ball is drawn [m]; null: there is none. */
+  get ballAt(): Vec | null {
+    return this.ball ? (this.ball.group.position.toArray() as Vec) : null;
+  }
+  get obstaclesAt(): Vec[] {
+    return this.obstacles.map((o) => o.group.position.toArray() as Vec);
+  }
+
+  showScene(opened: number, obstacles: ObstacleInfo[]): void {
+    const key = JSON.stringify([opened, obstacles]);
+    if (key === this.known) return;
+    this.known = key;
+    for (const o of this.obstacles) o.remove();
+    this.obstacles = obstacles.map((o) => new Sphere(this.labels, "force steel", [this.steel], o.radius));
+    for (const o of this.obstacles) this.group.add(o.group, o.twin);
+  }
+
+  hear(status: Status): void {
+    status.obstacles.forEach((o, i) => this.obstacles[i]?.hear(o, status.time));
+    if (!status.ball) return this.drop();
+    if (!this.ball) {
+      this.ball = new Sphere(this.labels, "force", this.amber, status.ball.radius);
+      this.group.add(this.ball.group, this.ball.twin);
+    }
+    this.ball.hear(status.ball, status.time);
+  }
+
+  /** The ball is gone. */
+  drop(): void {
+    if (!this.ball) return;
+    this.ball.remove();
+    this.ball = null;
+    this.stage.changed();
+  }
+
+  /** Once per picture, which shows the simulated time [s]; `now` [ms]; `beside`: how far a compared
+   * body is drawn from the first [m]. */
+  update(time: number, now: number, beside: THREE.Vector3): void {
+    for (const sphere of this.ball ? [...this.obstacles, this.ball] : this.obstacles) {
+      if (sphere.update(this.stage, time, now, beside)) this.stage.changed();
+    }
+  }
+}

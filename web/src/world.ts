@@ -1,0 +1,149 @@
+// Everything that is seen in three dimensions, and what the pointer does to it.
+import * as THREE from "three";
+import { BallTool } from "./ball";
+import type { Arrangement } from "./compared";
+import { titlesOf } from "./compare";
+import { Hands } from "./hands";
+import type { Shown } from "./options";
+import { Picker } from "./picker";
+import type { Command, Frame, SceneInfo, Status, Topology } from "./protocol";
+import { Spheres } from "./spheres";
+import { Stage } from "./stage";
+import { Tissue } from "./tissue";
+
+const NEAR = 1; // diagonals from the body: obstacles that are in the first view
+
+export class World {
+  readonly stage: Stage;
+  readonly tissue: Tissue;
+  readonly spheres: Spheres;
+  readonly hands: Hands;
+  readonly ball: BallTool;
+  /** The bounds of the whole body at rest, as far as they have been seen [m]. */
+  readonly box = new THREE.Box3();
+  shown: Frame | null = null;
+  private scene: SceneInfo | null = null;
+  private colored = false;
+  private fitted = -1; // the scene that the camera was fitted to, as `opened` counts
+  private lookAround = false; // for obstacles, with the next status
+
+  constructor(
+    canvas: HTMLCanvasElement,
+    labels: HTMLElement,
+    send: (command: Command) => boolean,
+  ) {
+    this.stage = new Stage(canvas);
+    this.tissue = new Tissue(labels);
+    this.stage.scene.add(this.tissue.group);
+    this.spheres = new Spheres(this.stage, labels);
+    const picker = new Picker(this.stage, this.tissue);
+    this.hands = new Hands(this.stage, this.tissue, picker, labels, send);
+    this.ball = new BallTool(this.stage, picker, send);
+  }
+
+  /** Whether this browser has the controls. */
+  setControls(have: boolean): void {
+    this.hands.mayPull = this.ball.mayPush = have;
+    if (have) return;
+    this.hands.forget();
+    this.ball.forget();
+  }
+
+  showScene(scene: SceneInfo, arrangement: Arrangement): void {
+    const before = this.scene?.compare ?? "";
+    this.scene = scene;
+    this.spheres.showScene(scene.opened, scene.obstacles);
+    this.tissue.compared.name(titlesOf(scene));
+    if (before !== scene.compare && (!before || !scene.compare)) this.arrange(arrangement);
+  }
+
+  hear(status: Status): void {
+    this.hands.hear(status.hands);
+    this.spheres.hear(status);
+    this.ball.hear(status.ball);
+    this.tissue.compared.tell(status.distance?.largest ?? 0);
+    if (!this.lookAround) return;
+    this.lookAround = false;
+    const all = this.box.clone();
+    status.obstacles.forEach(({ center }, i) => {
+      const at = new THREE.Vector3(...center);
+      if (this.box.distanceToPoint(at) > NEAR * this.scene!.diagonal) return;
+      all.union(new THREE.Box3().setFromCenterAndSize(at, new THREE.Vector3().setScalar(2 * this.scene!.obstacles[i].radius)));
+    });
+    if (!all.equals(this.box)) this.stage.fit(all, this.scene!.ground);
+  }
+
+  build(topology: Topology): void {
+    const opened = this.scene?.opened ?? -1;
+    // A cut or springs bring other nodes of the same scene: the view stays, and what is held is held.
+    const same = opened === this.fitted;
+    this.tissue.build(topology);
+    this.shown = null;
+    const box = new THREE.Box3().setFromArray(topology.rest);
+    if (same) {
+      this.box.union(box);
+      this.hands.renumber();
+      return;
+    }
+    this.forget();
+    this.box.copy(box);
+    this.fitted = opened;
+    this.lookAround = (this.scene?.obstacles.length ?? 0) > 0;
+    this.stage.fit(box, this.scene?.ground ?? null);
+  }
+
+  /** Shows a frame, coloured or in the plain look. Returns whether it is one of what is built. */
+  show(frame: Frame, now: number): boolean {
+    if (!this.tissue.fits(frame)) return false;
+    this.tissue.show(frame, this.colored ? this.scene : null, now);
+    this.shown = frame;
+    this.stage.changed();
+    return true;
+  }
+
+  setColored(on: boolean): void {
+    this.colored = on;
+    this.tissue.range.reset();
+    if (!on && this.shown) this.tissue.show(this.shown, null, performance.now());
+    this.stage.changed();
+  }
+
+  set(what: Shown, on: boolean): void {
+    if (what === "grid") this.stage.setGrid(on);
+    else this.tissue.set(what, on);
+    this.stage.changed();
+  }
+
+  /** Over or beside each other: the camera turns to both. */
+  arrange(how: Arrangement): void {
+    const across = new THREE.Vector3().setFromMatrixColumn(this.stage.camera.matrixWorld, 0);
+    const { compared } = this.tissue;
+    const [was, comparing] = [compared.shift.clone(), Boolean(this.scene?.compare)];
+    compared.arrange(comparing ? how : "over", this.box, across);
+    if (this.shown) this.tissue.show(this.shown, this.colored ? this.scene : null, performance.now());
+    if (!was.equals(compared.shift)) this.stage.include([this.box, this.box.clone().translate(compared.shift)]);
+    this.stage.changed();
+  }
+
+  releaseAll(): void {
+    this.hands.releaseAll();
+    this.ball.release();
+  }
+
+  /** What is held is gone: another scene, a reset, or the controls. */
+  forget(): void {
+    this.hands.forget();
+    this.ball.forget();
+    this.spheres.drop();
+  }
+
+  /** Once per picture. Returns whether anything was drawn. */
+  draw(now: number): boolean {
+    this.hands.update();
+    this.ball.update(now);
+    this.spheres.update(this.shown?.time ?? 0, now, this.tissue.compared.shift);
+    this.tissue.compared.update(this.stage, this.tissue.box);
+    if (this.hands.held.size > 0) this.stage.changed();
+    return this.stage.draw(now);
+  }
+}
