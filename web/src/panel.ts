@@ -86,6 +86,7 @@ export class Panel {
       const name = (p: Part) => (p.region ? `${p.body}: ${p.region}` : p.body);
       const list: [string, string][] = scene.parts.map((p, i) => [String(i), name(p)]);
       fill(this.part.input, several ? [[EVERYTHING, "Everything"], ...list] : list);
+      this.part.input.selectedIndex = 0;
       this.part.row.hidden = !several;
     }
     this.showPart();

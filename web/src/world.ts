@@ -8,10 +8,10 @@ import type { Shown } from "./options";
 import { Picker } from "./picker";
 import type { Command, Frame, SceneInfo, Status, Topology } from "./protocol";
 import { Spheres } from "./spheres";
-import { Stage } from "./stage";
+import { cornersOf, Stage } from "./stage";
 import { Tissue } from "./tissue";
 
-const NEAR = 1; // diagonals from the body: obstacles that are in the first view
+const NEAR = 1; // diagonals from the body: obstacles and ground that are in the first view
 
 export class World {
   readonly stage: Stage;
@@ -70,7 +70,7 @@ export class World {
       if (this.box.distanceToPoint(at) > NEAR * this.scene!.diagonal) return;
       all.union(new THREE.Box3().setFromCenterAndSize(at, new THREE.Vector3().setScalar(2 * this.scene!.obstacles[i].radius)));
     });
-    if (!all.equals(this.box)) this.stage.fit(all, this.scene!.ground);
+    if (!all.equals(this.box)) this.fit(all);
   }
 
   build(topology: Topology): void {
@@ -89,7 +89,23 @@ export class World {
     this.box.copy(box);
     this.fitted = opened;
     this.lookAround = (this.scene?.obstacles.length ?? 0) > 0;
-    this.stage.fit(box, this.scene?.ground ?? null);
+    this.fit(box);
+  }
+
+  /** Everything in view, and the ground that it may fall to. */
+  private fit(box: THREE.Box3): void {
+    const ground = this.scene?.ground ?? null;
+    const seen = box.clone();
+    if (ground) {
+      const normal = new THREE.Vector3(...ground.normal).normalize();
+      const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, new THREE.Vector3(...ground.point));
+      const near = NEAR * box.getSize(new THREE.Vector3()).length();
+      for (const corner of cornersOf(box)) {
+        const height = plane.distanceToPoint(corner);
+        if (height > 0 && height < near) seen.expandByPoint(corner.addScaledVector(normal, -height));
+      }
+    }
+    this.stage.fit(seen, ground);
   }
 
   /** Shows a frame, coloured or in the plain look. Returns whether it is one of what is built. */
