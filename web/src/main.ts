@@ -10,7 +10,7 @@ import { digits, length } from "./format";
 import { Help } from "./help";
 import { PLAIN, ViewOptions } from "./options";
 import { Panel } from "./panel";
-import type { Command, Frame, SceneInfo, Status, Text } from "./protocol";
+import type { Command, Frame, SceneInfo, Status, Text, Vec } from "./protocol";
 import { PROTOCOL } from "./protocol";
 import "./style.css";
 import "./tools.css";
@@ -114,6 +114,12 @@ class App {
         return [r.left + 0.5 * r.width * (1 + p.x), r.top + 0.5 * r.height * (1 - p.y)];
       },
     };
+  }
+
+  /** For the pictures of the documentation: sees everything as it is now, from a direction, with so much
+   * room around it (1: none). */
+  look(from: Vec, room?: number): void {
+    this.world.look(from, room);
   }
 
   private layOut(): void {

@@ -163,7 +163,7 @@ export class Stage {
   }
 
   /** Where the camera sees all of it, from a direction, beside what lies over the view. */
-  private placeFor(boxes: THREE.Box3[], direction: THREE.Vector3): Place {
+  private placeFor(boxes: THREE.Box3[], direction: THREE.Vector3, room = ROOM): Place {
     const all = new THREE.Box3();
     for (const box of boxes) all.union(box);
     const target = all.getCenter(new THREE.Vector3());
@@ -173,7 +173,7 @@ export class Stage {
     let distance = 1e-6;
     for (const corner of boxes.flatMap(cornersOf)) {
       corner.sub(target).applyMatrix4(turn); // z towards the viewer
-      distance = Math.max(distance, corner.z + ROOM * Math.max(Math.abs(corner.x) / right, Math.abs(corner.y) / up));
+      distance = Math.max(distance, corner.z + room * Math.max(Math.abs(corner.x) / right, Math.abs(corner.y) / up));
     }
     return { target, position: target.clone().addScaledVector(direction, distance) };
   }
@@ -183,11 +183,21 @@ export class Stage {
     this.controls.enableDamping = false; // what still swings on ends
     this.controls.update();
     this.controls.enableDamping = true;
-    const { position, target } = this.home();
+    this.place(this.home());
+  }
+
+  /** Sees these bounds from a direction, at once. */
+  look(boxes: THREE.Box3[], direction: THREE.Vector3, room = ROOM): void {
+    this.glide = null;
+    this.place(this.placeFor(boxes, direction, room));
+  }
+
+  private place({ position, target }: Place): void {
     this.camera.position.copy(position);
     this.controls.target.copy(target);
     this.camera.updateProjectionMatrix();
     this.controls.update();
+    this.changed();
   }
 
   /** The direction from what is seen to who sees it. */
