@@ -217,6 +217,25 @@ TEST(Compare, EndsWithAnotherScene) {
   frames(s, 1);
 }
 
+TEST(LiveSteps, AreImplicitWhereExplicitOnesCannotKeepPace) {
+  Simulation s(test::hanging_box({"box.cells=[8,8,8]", "box.young=1e3"}));
+  EXPECT_EQ(s.parameters()->stepper, "live");
+  s.apply(SetMaterial{"", "", "young", "1e9"});
+  EXPECT_EQ(s.status().stepper, "implicit");
+  EXPECT_FALSE(s.status().reason.empty());
+  s.apply(SetCompare{"fem"});
+  frames(s, 3);
+  EXPECT_EQ(s.frame().compared.empty(), false);
+  s.apply(SetStepping{"stepper", "verlet"});
+  EXPECT_EQ(s.parameters()->stepper, "verlet");
+  EXPECT_EQ(s.status().stepper, "verlet");
+  s.apply(SetStepping{"stepper", "live"});
+  EXPECT_EQ(s.parameters()->stepper, "live");
+  EXPECT_EQ(s.status().stepper, "implicit");
+  s.apply(SetMaterial{"", "", "young", "1e3"});
+  EXPECT_EQ(s.parameters()->document.find("stepper"), std::string::npos);
+}
+
 TEST(Contacts, OnTheGround) {
   Simulation s(load_scene(std::string(SINEW_SOURCE_DIR) + "/scenes/drop.toml"));
   EXPECT_TRUE(s.frame().contact.empty());

@@ -20,11 +20,14 @@ namespace {
 using test::point_masses;
 using test::tissue_box;
 
-State run(const Model& m, double h, int steps, Scheme scheme) {
+State run(const Model& m, double h, int steps, const ImplicitOptions& options) {
   State s = initial_state(m);
   ImplicitStepper stepper(m);
-  for (int i = 0; i < steps; ++i) stepper.step(h, {.scheme = scheme}, s);
+  for (int i = 0; i < steps; ++i) stepper.step(h, options, s);
   return s;
+}
+State run(const Model& m, double h, int steps, Scheme scheme) {
+  return run(m, h, steps, {.scheme = scheme});
 }
 
 // 2 kg on a spring of 50 N/m that is at rest at 1 m: omega = 5 rad/s. Starts stretched by 0.1 m.
@@ -201,6 +204,32 @@ TEST(Implicit, TheWorkOfAnObstacleIsInTheEnergyAccount) {
   const Energies e = measure_energies(m, s, workspace);
   EXPECT_GT(e.work_in, 1e-5);
   EXPECT_NEAR(e.total(), 0.0, 0.03 * e.work_in);
+}
+
+// Forces in single precision change a loose step by less than its tolerance does, at any stiffness.
+TEST(Implicit, LooseStepsMayTakeForcesInSinglePrecision) {
+  for (const double young : {1e3, 1e6, 1e9}) {
+    Material material;
+    material.young = young;
+    material.damping_ratio = 0.1;
+    Model m = tissue_box(material, {3, 3, 3});
+    m.pins.push_back({"top", test::nodes_at(m, 1, 0.05), {}});
+    finish(m);
+    const auto fall = [&](double tolerance, bool single) {
+      return run(m, 1.0 / 60.0, test::sanitized ? 3 : 20,
+                 {.scheme = Scheme::backward_euler, .tolerance = tolerance, .single = single});
+    };
+    const State loose = fall(1e-3, false);
+    const State single = fall(1e-3, true);
+    double way = 0.0;
+    double off = 0.0;
+    for (std::size_t i = 0; i < m.rest_position.size(); ++i) {
+      way = std::max(way, (loose.position[i] - m.rest_position[i]).norm());
+      off = std::max(off, (loose.position[i] - single.position[i]).norm());
+    }
+    EXPECT_LT(off, 2e-3 * way) << young;
+    EXPECT_EQ(fall(1e-6, true).position, fall(1e-6, false).position) << "too tight for it";
+  }
 }
 
 TEST(Implicit, SameBitsAtAnyThreadCount) {

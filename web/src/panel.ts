@@ -7,6 +7,7 @@ import { Slider } from "./slider";
 
 const LAWS = ["neo-hookean", "calibrated", "lloyd", "vangelder"];
 const STEPPERS: [string, string][] = [
+  ["live", "Keeps pace"],
   ["auto", "Automatic"],
   ["verlet", "Explicit (Verlet)"],
   ["implicit", "Implicit"],

@@ -55,6 +55,7 @@ void Simulation::act(const SetCompare& c) {
   other_.reset();
   // Both begin anew from this state: with the same law they would take the same steps.
   rebuild(scene_, &run_.state);
+  other->leader_ = this;
   other->rebuild(other->scene_, &run_.state);
   other->hands_ = hands_;
   other->ball_ = ball_;

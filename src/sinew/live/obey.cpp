@@ -12,6 +12,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/live/simulation.h"
 #include "sinew/run/recorder.h"
+#include "sinew/scene/document.h"
 
 namespace sinew::live {
 namespace {
@@ -19,8 +20,6 @@ namespace {
 constexpr std::array<std::string_view, 13> material_keys = {
     "law",  "young",         "poisson",        "density", "damping", "damping_ratio", "viscosity",
     "drag", "stretch_limit", "compress_limit", "volume",  "beta",    "volume_limit"};
-constexpr std::array<std::string_view, 7> stepping_keys = {
-    "stepper", "scheme", "dt", "substeps", "precision", "tolerance", "safety"};
 
 template <std::size_t N>
 void require_key(const std::array<std::string_view, N>& keys, const std::string& key) {
@@ -46,6 +45,17 @@ void require_point(const Vec3& point) {
 
 Scene with(const Scene& scene, const std::vector<std::string>& overrides) {
   return parse_scene(scene.document, scene.file, scene.base, overrides);
+}
+
+// The scene without what it says of its steps.
+Scene without_steps(const Scene& scene) {
+  DocValue root = parse_document(scene.document, scene.file);
+  std::erase_if(root.entries, [](const DocEntry& entry) {
+    return std::find(keys_of_steps.begin(), keys_of_steps.end(), entry.key) != keys_of_steps.end();
+  });
+  Scene out = parse_scene(write_document(root), scene.file, scene.base);
+  out.name = scene.name;
+  return out;
 }
 
 }  // namespace
@@ -140,9 +150,11 @@ void Simulation::act(const SetMaterial& c) {
 }
 
 void Simulation::act(const SetStepping& c) {
-  require_key(stepping_keys, c.key);
+  require_key(keys_of_steps, c.key);
   require_plain(c.value);
-  change({c.key + "=" + c.value});
+  if (c.key != "stepper" || c.value != "live") return change({c.key + "=" + c.value});
+  const State keep = run_.state;
+  rebuild(without_steps(scene_), &keep);
 }
 
 void Simulation::act(const SetGravity& c) {

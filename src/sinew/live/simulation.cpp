@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <utility>
 
@@ -15,6 +16,7 @@
 #include "sinew/run/recorder.h"
 #include "sinew/run/summary.h"
 #include "sinew/scene/build.h"
+#include "sinew/scene/document.h"
 
 namespace sinew::live {
 namespace {
@@ -27,6 +29,41 @@ constexpr double speed_window = 0.5;
 double interval_of(const Scene& scene) {
   const double frame = 1.0 / scene.output.fps;
   return scene.dt ? std::max(frame, *scene.dt / scene.substeps) : frame;
+}
+
+// How close implicit steps come to equilibrium where the view chooses them;
+// docs/methods/implicit.md tells what that costs.
+constexpr double live_tolerance = 0.03;
+// What an implicit step costs in explicit ones of single precision: about (docs/methods/auto.md).
+constexpr double steps_of_implicit = 60.0;
+// Wall time over simulated time from which on explicit steps are too slow.
+constexpr double most_load = 1.1;
+
+bool leaves_the_choice(const Scene& scene) {
+  const DocValue root = parse_document(scene.document, scene.file);
+  return std::none_of(keys_of_steps.begin(), keys_of_steps.end(),
+                      [&](std::string_view key) { return root.find(key) != nullptr; });
+}
+
+// Restitution, and limits after every step, are better known to explicit steps.
+bool knows_implicit(const Model& model) {
+  return !model.ground && model.limited.empty() && !model.has_volume_limit;
+}
+
+// Of two trial steps the faster one [s].
+double wall_of_a_step(Stepping& stepping, RunState run) {
+  static const std::atomic<bool> after_one_step{true};
+  double least = no_limit;
+  for (int i = 0; i < 3; ++i) {
+    const Clock::time_point start = Clock::now();
+    try {
+      stepping.advance_frame(run, &after_one_step);
+    } catch (const Error&) {
+      return no_limit;
+    }
+    least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
+  }
+  return least;
 }
 
 }  // namespace
@@ -51,6 +88,35 @@ void Simulation::let_go() {
   ball_.remove(*model_, run_.state);
 }
 
+// A scene that says nothing about its steps takes explicit ones, and those of backward Euler where
+// explicit ones cannot keep pace with the clock and these are less work. Compared bodies take the
+// same.
+std::unique_ptr<Stepping> Simulation::choose_steps(Scene& stepped, const Model& model,
+                                                   RunState& run) const {
+  const auto implicit = [&](std::string reason) {
+    stepped.stepper = "implicit";
+    stepped.scheme = "backward-euler";
+    stepped.tolerance = live_tolerance;
+    RunState anew;
+    anew.state = run.state;
+    anew.frame = run.frame;
+    run = std::move(anew);
+    auto stepping = std::make_unique<Stepping>(stepped, model, run);
+    run.stepper_reason = std::move(reason);
+    return stepping;
+  };
+  const bool free = leaves_the_choice(stepped) && knows_implicit(model);
+  if (free && leader_ != nullptr && leader_->run_.stepper == "implicit") return implicit("");
+  auto stepping = std::make_unique<Stepping>(stepped, model, run);
+  if (!free || leader_ != nullptr) return stepping;
+  const double steps = 1.0 / (frames_per_second * run.target_step);
+  if (steps < steps_of_implicit) return stepping;
+  const double wall = steps * wall_of_a_step(*stepping, run);
+  if (wall * frames_per_second < most_load) return stepping;
+  return implicit(fmt::format("explicit steps, {:.0f} a frame, would take {:.1f} times real time",
+                              steps, wall * frames_per_second));
+}
+
 // Makes everything anew before anything of it is put in place: a scene that cannot be built leaves
 // the one before as it is.
 void Simulation::rebuild(const Scene& scene, const State* keep) {
@@ -68,7 +134,7 @@ void Simulation::rebuild(const Scene& scene, const State* keep) {
     calm_softened_bodies(*model_, *model, run.state);
     run.frame = static_cast<std::int64_t>(std::floor(keep->time / interval_of(stepped) + 1e-9));
   }
-  auto stepping = std::make_unique<Stepping>(stepped, *model, run);
+  auto stepping = choose_steps(stepped, *model, run);
   scene_ = scene;
   stepped_ = std::move(stepped);
   stepping_ = std::move(stepping);  // before the model that it refers to goes
@@ -93,7 +159,7 @@ void Simulation::remember_parameters() {
     for (const SceneRegion& r : body.regions) p->parts.push_back({body.name, r.name, r.material});
   }
   p->gravity = scene_.gravity;
-  p->stepper = scene_.stepper;
+  p->stepper = leaves_the_choice(scene_) ? "live" : scene_.stepper;
   p->dt = scene_.dt.value_or(0.0);
   if (scene_.ground) {
     p->has_ground = true;

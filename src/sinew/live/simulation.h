@@ -2,9 +2,11 @@
 // its own speed. docs/view.md. Runner (runner.h) gives it a thread.
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <memory>
+#include <string_view>
 
 #include "sinew/live/ball.h"
 #include "sinew/live/command.h"
@@ -13,6 +15,10 @@
 #include "sinew/run/stepping.h"
 
 namespace sinew::live {
+
+// What a scene says of its steps. Where it names none of these, the view chooses.
+inline constexpr std::array<std::string_view, 7> keys_of_steps = {
+    "stepper", "scheme", "dt", "substeps", "precision", "tolerance", "safety"};
 
 // Frames that are shown per simulated second.
 inline constexpr double frames_per_second = 60.0;
@@ -79,6 +85,7 @@ class Simulation {
 
   void change(const std::vector<std::string>& overrides);
   void rebuild(const Scene& scene, const State* keep);
+  std::unique_ptr<Stepping> choose_steps(Scene& stepped, const Model& model, RunState& run) const;
   void remember_parameters();
   void show(const Cut& cut, bool springs);
   void let_go();
@@ -112,9 +119,10 @@ class Simulation {
 
   // The body that this one is compared with: a simulation of the same scene with another law.
   std::unique_ptr<Simulation> other_;
-  std::string compare_;  // that law's name
-  bool ahead_ = false;   // this one's frame is finished, the other's is not
-  struct Pair {          // positions of both at the same time [m] (nodes)
+  const Simulation* leader_ = nullptr;  // of the other: the one whose steps it takes
+  std::string compare_;                 // that law's name
+  bool ahead_ = false;                  // this one's frame is finished, the other's is not
+  struct Pair {                         // positions of both at the same time [m] (nodes)
     std::vector<Vec3> mine, others;
   };
   Pair pair_;

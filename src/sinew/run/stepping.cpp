@@ -122,6 +122,7 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
     implicit_ = std::make_unique<ImplicitStepper>(model);
     implicit_options_.scheme = scene.scheme == "sdirk2" ? Scheme::sdirk2 : Scheme::backward_euler;
     implicit_options_.tolerance = tolerance_;
+    implicit_options_.single = scene.precision == "single";
   }
   if (scene.precision == "single" && run.stepper != "implicit") {
     workspace_.packed = std::make_shared<PackedForces>(model);

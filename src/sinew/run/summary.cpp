@@ -107,7 +107,9 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.springs = model.spring_count();
   s.stepper = run.stepper;
   s.stepper_asked = scene.stepper;
-  s.precision = run.stepper == "verlet" ? scene.precision : "double";
+  const bool may_be_single = run.stepper == "verlet" ||
+                             (run.stepper == "implicit" && may_take_single(model, scene.tolerance));
+  s.precision = may_be_single ? scene.precision : "double";
   s.stepper_reason = run.stepper_reason;
   s.dt_auto = !scene.dt.has_value();
   s.dt = run.step > 0.0 ? run.step : run.target_step;

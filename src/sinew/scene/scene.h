@@ -156,7 +156,7 @@ struct Scene {
   std::string stepper = "verlet";    // verlet, implicit, static, auto
   std::string scheme = "sdirk2";     // implicit: sdirk2, backward-euler
   double tolerance = 1e-6;           // static: residual of a rest state, as a share of the forces
-  std::string precision = "single";  // verlet: of the forces of tets and springs: single, double
+  std::string precision = "single";  // of the forces of tets and springs: single, double
   std::optional<double> dt;          // [s]; absent: "auto"
   std::optional<double> budget_ms;   // [ms] of wall time that the steps of a frame may take
   int substeps = 1;                  // the step taken is dt / substeps

@@ -9,12 +9,15 @@
 #include "sinew/base/parallel.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
+#include "sinew/forces/packed.h"
 #include "sinew/forces/righting.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 
 namespace sinew {
 namespace {
+
+constexpr double single_tolerance = 1e-3;
 
 constexpr int most_cuts = 10;
 
@@ -63,6 +66,11 @@ double work_of_the_outside(const Model& model, const Field& before, double since
 
 }  // namespace
 
+bool may_take_single(const Model& model, double tolerance) {
+  return tolerance >= single_tolerance && !model.ground && model.limited.empty() &&
+         !model.has_volume_limit;
+}
+
 ImplicitStepper::ImplicitStepper(const Model& model)
     : model_(model), workspace_(model), linear_(model) {}
 
@@ -94,6 +102,9 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
       &from,   &lag,      constraints_->empty() ? nullptr : constraints_.get()};
   const NewtonOptions newton_options{
       options.tolerance, options.max_newton, nullptr, {}, options.deadline};
+  const bool single = options.single && may_take_single(model_, options.tolerance);
+  if (single && !packed_) packed_ = std::make_shared<PackedForces>(model_);
+  if (single) workspace_.packed = packed_;
   move_pins(model_, state);
   const Field stand = state.position;
   const double standing = options.deadline ? objective_value(objective, state, workspace_) : 0.0;
@@ -104,6 +115,7 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
     state.position = stand;
   }
   NewtonReport newton = minimise_within(objective, linear_, newton_options, workspace_, state);
+  workspace_.packed.reset();
   report.newton += newton.newton;
   report.products += newton.products;
   if (!newton.rests && !options.deadline) {  // a start that flew too far: from where it stands

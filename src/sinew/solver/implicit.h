@@ -18,8 +18,13 @@ struct ImplicitOptions {
   Scheme scheme = Scheme::sdirk2;
   double tolerance = 1e-6;  // see NewtonReport::residual
   int max_newton = 50;      // Newton steps before the step is cut in half
+  bool single = false;      // forces in single precision, where it may_take_single()
   Deadline deadline = {};   // of the step; what is there then is the step, however far it is
 };
+
+// Whether steps to this tolerance may take forces in single precision: its digits are more than
+// enough, and the model has no ground and no limits.
+bool may_take_single(const Model& model, double tolerance);
 
 struct ImplicitReport {
   int newton = 0;         // Newton steps
@@ -77,6 +82,7 @@ class ImplicitStepper {
 
   const Model& model_;
   Workspace workspace_;
+  std::shared_ptr<PackedForces> packed_;  // made when first asked for
   LinearSolver linear_;
   double constrained_inertia_ = 0.0;  // what constraints_ was made for
   std::unique_ptr<Constraints> constraints_;

@@ -251,6 +251,8 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
     report.ran_out = report.newton > 0 && passed(deadline);
     if (report.ran_out) return report;
     const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.3);
+    // Forces in single precision leave no gradients of the tets behind.
+    if (workspace.packed) prepare_stiffness(objective.model, state.position, workspace);
     linear.assemble(objective, state.position, workspace);
     report.products += linear.solve(f, forcing, most_products, deadline, p);
     ++report.newton;
