@@ -5,9 +5,11 @@
     page_test.py view      the page in headless Chromium with `sinew view` behind it
     page_test.py tools     ball, obstacles, contacts, springs, cut, comparison of laws
     page_test.py data      plots, downloads, gallery and dropped files
+    page_test.py states    what the documentation shows, with pictures in build/.../web
+    page_test.py soak      twenty seconds of random use
     page_test.py server    losing and finding the server again, tokens, frames a second and latency
 
-Without node 18 or what `./dev web` fetches, and for the last three without Chromium, a test is
+Without node 18 or what `./dev web` fetches, and for the last five without Chromium, a test is
 skipped (exit code 77) and says what is missing; with SINEW_WEB=required it fails.
 """
 
