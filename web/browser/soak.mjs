@@ -118,7 +118,13 @@ function choose(chance) {
 async function measure(page, protocol, pid) {
   await press(page, "Escape");
   await page.selectOption("#compare-law", "");
-  for (const id of ["#show-springs", "#show-cut"]) await page.locator(id).setChecked(false, { force: true });
+  // What was pressed last may still be on its way to the server and back.
+  for (const [key, is] of [["l", (s) => s.springs_shown], ["x", (s) => s.cut !== null]]) {
+    for (let i = 0; i < 5 && is(await state(page, "scene")); ++i) {
+      await press(page, key);
+      await page.waitForTimeout(300);
+    }
+  }
   await open(page, HOME);
   await protocol.send("HeapProfiler.collectGarbage");
   const { metrics } = await protocol.send("Performance.getMetrics");

@@ -29,7 +29,7 @@ export class Around {
   private readonly notice = new Notice();
   private readonly opening = new Opening();
   private readonly gallery: Gallery;
-  private readonly hint: Hint;
+  readonly hint: Hint;
   private readonly save: SaveMenu;
   private scene = "sinew";
   private controls = false;
@@ -55,7 +55,7 @@ export class Around {
     });
     const drop = new DropZone((files) => void this.take(files));
     this.buttons = [this.gallery.button, this.plots.button, this.save.button];
-    this.elements = [this.hint.element, this.save.element, this.save.recording, this.notice.element, this.opening.element, this.gallery.element, drop.element];
+    this.elements = [this.save.element, this.save.recording, this.notice.element, this.opening.element, this.gallery.element, drop.element];
     document.body.append(this.plots.element); // below the rest, which gives it its place
     this.keys = {
       d: () => this.plots.toggle(),

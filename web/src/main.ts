@@ -142,7 +142,7 @@ class App {
     document.querySelector("#ui")!.append(
       h("header", {}, h("div", { class: "heading" }, this.title, this.lookFor, this.bar.element), corner),
       this.panel.element, this.options.element, this.scale.element,
-      h("footer", {}, this.limit, this.tools.card, transport),
+      h("footer", {}, this.around.hint.element, this.limit, this.tools.card, transport),
       this.lost, this.help.element, ...this.around.elements);
     this.role.hidden = true;
     if (innerWidth < NARROW) document.body.classList.add("no-panel", "no-options");

@@ -44,7 +44,7 @@ export class SaveMenu {
     document.addEventListener("pointerdown", left, { capture: true });
     document.addEventListener("focusin", left);
 
-    this.recording = h("button", { type: "button", id: "recording", hidden: true, title: "Stop and save the video" });
+    this.recording = h("button", { type: "button", id: "recording", hidden: true, title: "Stop and save the video", "aria-label": "Stop the video" });
     this.recording.append(h("i"), h("span"));
     this.recording.addEventListener("click", () => this.recorder.stop());
     this.recorder = new Recorder(from.canvas, {
