@@ -48,9 +48,10 @@ export async function launch() {
 }
 
 /** Opens the address in a page, lets `body` test it, and closes it whatever comes. Nothing may be
- * fetched from elsewhere or complained of on the console. */
+ * fetched from elsewhere or complained of on the console. Drawn in half as many pixels a length as
+ * the page has, unless options say otherwise: the processor draws them. */
 export async function visit(browser, url, { width = 900, height = 600, ...options }, body) {
-  const context = await browser.newContext({ viewport: { width, height }, ...options });
+  const context = await browser.newContext({ viewport: { width, height }, deviceScaleFactor: 0.5, ...options });
   try {
     const page = await context.newPage();
     const faults = [];

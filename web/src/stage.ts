@@ -212,7 +212,7 @@ export class Stage {
 
   /** `covered`: pixels on the right that something lies over; the view is centred beside it. */
   resize(width: number, height: number, covered: number): void {
-    this.renderer.setPixelRatio(this.modest ? 0.75 : Math.min(window.devicePixelRatio, 2));
+    this.renderer.setPixelRatio(this.modest ? 0.75 * Math.min(window.devicePixelRatio, 1) : Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / Math.max(1, height);
     this.covered = covered;
