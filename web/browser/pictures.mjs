@@ -67,7 +67,7 @@ async function card(browser, name) {
 async function document(browser, { name, scene, size, show, document: file }) {
   const server = await serve(scene);
   try {
-    await visit(browser, `${server.url}#fine`, size, async (page) => {
+    await visit(browser, `${server.url}#fine`, { ...size, deviceScaleFactor: 1 }, async (page) => {
       await show(page);
       const path = join(root, "docs/images", `${file}.jpg`);
       await page.screenshot({ path, type: "jpeg", quality: 84 });

@@ -13,7 +13,7 @@ for (const { name, scene, size, show } of states) {
   test(`the page as it is when ${name}`, async () => {
     const server = await serve(scene);
     try {
-      await visit(browser, server.url, size, async (page) => {
+      await visit(browser, server.url, { ...size, deviceScaleFactor: 1 }, async (page) => {
         await show(page);
         await picture(page, name);
       });
