@@ -56,7 +56,8 @@ export const states = [
       await page.keyboard.press("x");
       await until(page, () => window.sinew.state.scene.cut !== null);
       await runUntil(page, 1.6);
-      await drawn(page);
+      await page.keyboard.press("Space");
+      await until(page, () => !window.sinew.state.status.running && document.querySelector("#limit").textContent === "");
     },
   },
   {
