@@ -48,11 +48,13 @@ class Examiner {
           "export the surface again");
       return std::move(e_);
     }
+    drop_nodes();
     measure_extent();
     make_sides();
     make_parts();
     turn_alike();
     look_at_edges();
+    look_at_nodes();
     measure_parts();
     if (e_.usable()) look_for_crossings();
     if (e_.usable()) nest();
@@ -65,15 +67,22 @@ class Examiner {
     e_.findings.push_back({kind, severity, count, std::move(text), std::move(remedy)});
   }
   const Vec3& x(Index node) const { return s_.nodes[uz(node)]; }
+  // A place for a message: what is nothing beside the extent is 0.
+  std::string at(const Vec3& p) const {
+    const double least = 1e-9 * (e_.high - e_.low).norm();
+    return to_text(p.unaryExpr([&](double v) { return std::abs(v) < least ? 0.0 : v; }));
+  }
 
   void join_nodes(const io::SurfaceSoup& soup);
   void drop_triangles();
   void drop_duplicates();
+  void drop_nodes();
   void measure_extent();
   void make_sides();
   void make_parts();
   void turn_alike();
   void look_at_edges();
+  void look_at_nodes();
   void holes(const std::vector<Side>& open);
   void measure_parts();
   void look_for_crossings();
@@ -132,7 +141,7 @@ void Examiner::drop_triangles() {
   }
   if (flat > 0) {
     add("flat_triangle", Severity::warning, flat,
-        fmt::format("{} without area, one at {}", counted(flat, "triangle"), to_text(where)));
+        fmt::format("{} without area, one at {}", counted(flat, "triangle"), at(where)));
   }
 }
 
@@ -189,11 +198,27 @@ void Examiner::drop_duplicates() {
     drop[i] = wall || uz(first_of[i]) != i;
     walls += wall && uz(first_of[i]) == i;
   }
-  std::size_t at = 0;
-  std::erase_if(all, [&](const Triangle&) { return drop[at++]; });
+  std::size_t i = 0;
+  std::erase_if(all, [&](const Triangle&) { return drop[i++]; });
   add("duplicate", Severity::warning, count,
       fmt::format("{} at the place of an earlier one: left out{}", counted(count, "triangle"),
                   walls > 0 ? fmt::format(", and {} that were a wall inside", walls) : ""));
+}
+
+// Nodes that no triangle names.
+void Examiner::drop_nodes() {
+  std::vector<Index> number(s_.nodes.size(), -1);
+  std::vector<Vec3> kept;
+  for (Triangle& t : s_.triangles) {
+    for (Index& n : t) {
+      if (number[uz(n)] < 0) {
+        number[uz(n)] = static_cast<Index>(kept.size());
+        kept.push_back(x(n));
+      }
+      n = number[uz(n)];
+    }
+  }
+  s_.nodes = std::move(kept);
 }
 
 void Examiner::measure_extent() {
@@ -287,7 +312,7 @@ void Examiner::turn_alike() {
         fmt::format(
             "has one side only, like a Moebius strip or a Klein bottle, so it has no inside; "
             "seen at {}",
-            to_text(where)),
+            at(where)),
         "model the surface anew");
     return;
   }
@@ -321,14 +346,43 @@ void Examiner::look_at_edges() {
     add("wall", Severity::repairable, walls,
         fmt::format("{} with an odd number of triangles, one at {}: a wall or a fin hangs on the "
                     "surface",
-                    counted(walls, "edge"), to_text(wall)),
+                    counted(walls, "edge"), at(wall)),
         "remove the wall, or try --repair");
   }
   if (touching > 0) {
     add("touching", Severity::warning, touching,
         fmt::format("{} with four triangles or more, one at {}: the surface touches itself there",
-                    counted(touching, "edge"), to_text(touch)));
+                    counted(touching, "edge"), at(touch)));
   }
+}
+
+// A node whose triangles do not hang together by edges belongs to several fans.
+void Examiner::look_at_nodes() {
+  Groups fans(3 * s_.triangles.size());  // of the corners of triangles
+  const auto corner = [&](Index triangle, Index node) {
+    const Triangle& t = s_.triangles[uz(triangle)];
+    return 3 * triangle + (t[0] == node ? 0 : t[1] == node ? 1 : 2);
+  };
+  each_edge([&](const Side* side, std::size_t n) {
+    if (n != 2) return;
+    for (const Index node : {side[0].a, side[0].b}) {
+      fans.join(corner(side[0].triangle, node), corner(side[1].triangle, node));
+    }
+  });
+  std::vector<Index> fan(s_.nodes.size(), -1);
+  std::vector<bool> several(s_.nodes.size());
+  for (std::size_t i = 0; i < 3 * s_.triangles.size(); ++i) {
+    const std::size_t node = uz(s_.triangles[i / 3][i % 3]);
+    const Index found = fans.of(static_cast<Index>(i));
+    if (fan[node] >= 0 && fan[node] != found) several[node] = true;
+    fan[node] = found;
+  }
+  const auto count = std::count(several.begin(), several.end(), true);
+  if (count == 0 || e_.find("touching") || e_.find("wall")) return;
+  const auto first = std::find(several.begin(), several.end(), true) - several.begin();
+  add("touching", Severity::warning, count,
+      fmt::format("{} where the surface touches itself, one at {}", counted(count, "node"),
+                  at(x(static_cast<Index>(first)))));
 }
 
 void Examiner::holes(const std::vector<Side>& open) {
@@ -365,7 +419,7 @@ void Examiner::holes(const std::vector<Side>& open) {
                   counted(static_cast<std::int64_t>(found.size()), "hole"),
                   counted(static_cast<std::int64_t>(open.size()), "edge"),
                   found.size() == 1 ? "it has its" : "the largest has", counted(l.edges, "edge"),
-                  to_text(l.sum / l.edges), l.length),
+                  at(l.sum / l.edges), l.length),
       "close the surface, or let --repair fill what is missing");
 }
 
@@ -413,7 +467,7 @@ void Examiner::look_for_crossings() {
                   between == 0              ? std::string("within one part")
                   : found.within_parts == 0 ? std::string("between parts")
                                             : fmt::format("{} between parts", between),
-                  to_text(found.first)),
+                  at(found.first)),
       "correct the surface where it crosses, or try --repair");
 }
 

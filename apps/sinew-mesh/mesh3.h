@@ -67,9 +67,10 @@ TetMesh to_tet_mesh(const C3t3& c3t3, const PatchLabel& patch_label) {
 // slivers. Lengths of the target are in the domain's unit. Error (input) where more than the
 // target's limit of nodes would be needed.
 template <class Domain, class CornerIndex, class CurveIndex, class PatchLabel>
-TetMesh fill(const Domain& domain,
-             const std::vector<std::pair<typename Domain::Point_3, typename Domain::Index>>& start,
-             const Target& target, const PatchLabel& patch_label, Progress& progress) {
+TetMesh generate(
+    const Domain& domain,
+    const std::vector<std::pair<typename Domain::Point_3, typename Domain::Index>>& start,
+    const Target& target, const PatchLabel& patch_label, Progress& progress) {
   using Tr = typename CGAL::Mesh_triangulation_3<Domain>::type;
   using C3t3 = CGAL::Mesh_complex_3_in_triangulation_3<Tr, CornerIndex, CurveIndex>;
   using Criteria = CGAL::Mesh_criteria_3<Tr>;
@@ -116,6 +117,21 @@ TetMesh fill(const Domain& domain,
   CGAL::exude_mesh_3(c3t3, param::sliver_bound = kSliverBound);
   progress.phase("numbering");
   return to_tet_mesh(c3t3, patch_label);
+}
+
+// generate(), and where CGAL gives up, an Error (input) that says so.
+template <class Domain, class CornerIndex, class CurveIndex, class Start, class PatchLabel>
+TetMesh fill(const Domain& domain, const Start& start, const Target& target,
+             const PatchLabel& patch_label, Progress& progress) {
+  try {
+    return generate<Domain, CornerIndex, CurveIndex>(domain, start, target, patch_label, progress);
+  } catch (const CGAL::Failure_exception& e) {
+    throw Error(
+        ErrorKind::input,
+        fmt::format("CGAL could not fill it at this size ({}:{})", e.filename(), e.line_number()),
+        target.sharp ? "take another --size, a larger --sharp angle, or none"
+                     : "take another --size");
+  }
 }
 
 }  // namespace sinew::mesher

@@ -146,7 +146,7 @@ io::SurfaceSoup drop_walls(const Examination& e, std::vector<std::string>& log) 
       if (chosen < 0) break;
       fin[uz(chosen)] = true;
     }
-    std::int64_t triangles = 0;
+    Index triangles = 0;
     for (std::size_t i = 0; i < drop.size(); ++i) {
       drop[i] = fin[uz(patches.of[i])];
       triangles += drop[i];
@@ -160,7 +160,7 @@ io::SurfaceSoup drop_walls(const Examination& e, std::vector<std::string>& log) 
 
 io::SurfaceSoup drop_scraps(const Examination& e, std::vector<std::string>& log) {
   std::vector<bool> drop(e.surface.triangles.size());
-  std::int64_t triangles = 0;
+  Index triangles = 0;
   for (std::size_t i = 0; i < drop.size(); ++i) {
     const Part& part = e.parts[uz(e.part_of[i])];
     drop[i] = part.loops > 0 && part.area < 0.01 * e.area;
