@@ -47,6 +47,11 @@ struct Examination {
   const Finding* find(const std::string& kind) const;
 };
 
+// The first step of examine(): joins nodes at the same place; leaves out triangles that name a
+// place twice, stand twice or are a wall between bodies that touch, and nodes that no triangle
+// names.
+io::SurfaceSoup clean(const io::SurfaceSoup& soup, std::vector<Finding>& findings);
+
 // Never throws for a bad surface.
 Examination examine(const io::SurfaceSoup& soup);
 

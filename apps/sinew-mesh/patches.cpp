@@ -7,14 +7,11 @@
 #include <array>
 #include <cmath>
 #include <map>
-#include <numeric>
+
+#include "groups.h"
 
 namespace sinew::mesher {
 namespace {
-
-std::string counted(std::int64_t n, const char* what) {
-  return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
-}
 
 // Triangles that hang together by edges with exactly two of them.
 struct Patches {

@@ -137,7 +137,7 @@ class MesherTest(CliTest):
 
     def test_06_many_small_balls(self):
         many = join(*[ball(0.2, (i, j, k), 3) for i in range(3) for j in range(3) for k in range(3)])
-        self.fill("s.off", many, 0.1, 27 * 0.2 ** 3 * BALL, within=0.1, parts=27)
+        self.fill("s.off", many, 0.1, 27 * 0.2 ** 3 * BALL, within=0.12, parts=27)
 
     def test_07_tiny(self):
         r = self.fill("s.ply", moved(ball(), 1e-9), 1.5e-10, 1e-27 * BALL)
