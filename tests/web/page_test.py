@@ -4,9 +4,12 @@
     page_test.py built     web/dist/index.html is what web/src gives
     page_test.py view      the page in headless Chromium with `sinew view` behind it
     page_test.py tools     ball, obstacles, contacts, springs, cut, comparison of laws
+    page_test.py data      plots, downloads, gallery and dropped files
+    page_test.py states    what the documentation shows, with pictures in build/.../web
+    page_test.py soak      twenty seconds of random use
     page_test.py server    losing and finding the server again, tokens, frames a second and latency
 
-Without node 18 or what `./dev web` fetches, and for the last three without Chromium, a test is
+Without node 18 or what `./dev web` fetches, and for the last five without Chromium, a test is
 skipped (exit code 77) and says what is missing; with SINEW_WEB=required it fails.
 """
 
@@ -33,7 +36,7 @@ def missing(name):
     if not (WEB / "node_modules" / ".installed").exists():
         return "what the page is built from: ./dev web"
     has_browser = os.environ.get("SINEW_CHROMIUM") or any(map(shutil.which, CHROMIUMS))
-    if name in ("view", "tools", "server") and not has_browser:
+    if name not in ("unit", "built") and not has_browser:
         return "Chromium: ./dev setup browser, or name one by SINEW_CHROMIUM"
     return None
 

@@ -13,15 +13,17 @@ mkdirSync(pictures, { recursive: true });
 
 const browsers = [process.env.SINEW_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chromium-browser", "/usr/bin/google-chrome"];
 
-/** Starts sinew view and gives its address; `stop` ends it by Ctrl-C and gives the exit code. */
+/** Starts sinew view and gives its address; `stop` ends it by Ctrl-C and gives the exit code. Without
+ * a scene (null) it begins with the gallery. */
 export async function serve(scene, { port = 0, host } = {}) {
-  const child = spawn(sinew, ["view", join(root, scene), "--port", String(port), ...(host ? ["--host", host] : [])], { stdio: ["ignore", "pipe", "inherit"] });
+  const child = spawn(sinew, ["view", ...(scene ? [join(root, scene)] : []), "--port", String(port), ...(host ? ["--host", host] : [])], { cwd: root, stdio: ["ignore", "pipe", "inherit"] });
   const url = await new Promise((found, failed) => {
     let text = "";
     child.stdout.on("data", (part) => {
       text += part;
       if (text.includes("\n")) found(text.split("\n")[0]);
     });
+    child.on("error", failed);
     child.on("exit", (code) => failed(new Error(`sinew view ended with ${code}`)));
   });
   const ended = new Promise((done) => child.on("exit", done));
@@ -46,9 +48,10 @@ export async function launch() {
 }
 
 /** Opens the address in a page, lets `body` test it, and closes it whatever comes. Nothing may be
- * fetched from elsewhere or complained of on the console. */
+ * fetched from elsewhere or complained of on the console. Drawn in half as many pixels a length as
+ * the page has, unless options say otherwise: the processor draws them. */
 export async function visit(browser, url, { width = 900, height = 600, ...options }, body) {
-  const context = await browser.newContext({ viewport: { width, height }, ...options });
+  const context = await browser.newContext({ viewport: { width, height }, deviceScaleFactor: 0.5, ...options });
   try {
     const page = await context.newPage();
     const faults = [];
@@ -78,16 +81,17 @@ export async function until(page, condition, argument, seconds = 60) {
 export const state = (page, key) => page.evaluate((k) => window.sinew.state[k], key);
 export const picture = (page, name) => page.screenshot({ path: join(pictures, `${name}.png`) });
 
-/** The surface node in the middle of the picture that is nearest to the viewer, and its place. */
-export const nodeInFront = (page) =>
-  page.evaluate(() => {
+/** The surface node that is nearest to the viewer around a place in the window (shares of its
+ * size), and its place. */
+export const nodeInFront = (page, across = 0.4, down = 0.5) =>
+  page.evaluate(([right, below]) => {
     const { positions, camera, onPage } = window.sinew.state;
     let best = 0, least = Infinity;
     for (let n = 0; n < positions.length / 3; ++n) {
       const [x, y] = onPage(n);
       const d = Math.hypot(...camera.map((c, i) => c - positions[3 * n + i]));
-      const score = d * (1 + Math.hypot(x / innerWidth - 0.4, y / innerHeight - 0.5));
+      const score = d * (1 + Math.hypot(x / innerWidth - right, y / innerHeight - below));
       if (score < least) [best, least] = [n, score];
     }
     return { node: best, at: onPage(best) };
-  });
+  }, [across, down]);

@@ -1,6 +1,5 @@
 // The page in a real browser, with a real simulation behind it.
 import assert from "node:assert/strict";
-import { readFile } from "node:fs/promises";
 import { after, before, test } from "node:test";
 import { launch, nodeInFront, picture, serve, state, until, visit } from "./support.mjs";
 
@@ -127,7 +126,7 @@ test("Young's modulus goes to 1 GPa and back while it runs", () =>
       await until(page, (e) => window.sinew.state.scene.parts.every((p) => Math.abs(p.young / e - 1) < 0.01), young);
     };
     await drive("End", 1e9);
-    await until(page, () => /Slower than real time/.test(document.querySelector("#limit").textContent));
+    await until(page, () => window.sinew.state.status.stepper === "implicit"); // keeps pace
     await picture(page, "gigapascal");
     const extent = () => page.evaluate(() => Math.max(...window.sinew.state.positions.map(Math.abs)));
     assert.ok((await extent()) < 0.5);
@@ -139,18 +138,6 @@ test("Young's modulus goes to 1 GPa and back while it runs", () =>
     await slider.evaluate((e) => { e.value = "100"; e.dispatchEvent(new Event("input")); });
     await until(page, () => Math.abs(window.sinew.state.scene.parts[0].young / 1e4 - 1) < 0.01);
     await reset(page);
-  }));
-
-test("the scene is saved as TOML with its values, the view as a picture", () =>
-  visit(browser, server.url, { acceptDownloads: true }, async (page) => {
-    const save = async (label) => {
-      const [download] = await Promise.all([page.waitForEvent("download"), page.getByLabel(label).click()]);
-      return readFile(await download.path());
-    };
-    assert.match((await save("Save the scene with its values")).toString(), /\[body\.liver\][^]*young = 10000/);
-    const png = await save("Save a picture");
-    assert.equal(png.subarray(1, 4).toString(), "PNG");
-    assert.ok(png.length > 5000);
   }));
 
 test("two may watch, one has the controls, the other may take them", async () => {

@@ -20,6 +20,9 @@ export const KEYS: [string, string][] = [
   ["V", "Options of the view"],
   ["F", "Whole body in view"],
   ["P", "Panel"],
+  ["D", "Plots"],
+  ["E", "Save: picture, video, data, scene, state"],
+  ["O", "Scenes"],
   ["H or ?", "This help"],
 ];
 const GESTURES: [string, string][] = [
@@ -29,6 +32,8 @@ const GESTURES: [string, string][] = [
   ["Drag beside it", "Turn the view"],
   ["Wheel or two fingers", "Zoom"],
   ["Right button or two fingers", "Move the view"],
+  ["Drop files", "Open a scene with its meshes, or a mesh"],
+  ["Drag in a plot", "Zoom in; double click: all"],
 ];
 
 export class Help {
@@ -38,7 +43,7 @@ export class Help {
     const close = h("button", { type: "button", class: "text" }, "Close");
     const list = (entries: [string, string][], className = "") =>
       h("dl", { class: className }, ...entries.flatMap(([key, what]) => [h("dt", {}, h("kbd", {}, key)), h("dd", {}, what)]));
-    this.element = h("dialog", { id: "help", "aria-label": "Keys and gestures" },
+    this.element = h("dialog", { id: "help", "aria-label": "Keys and gestures", "data-key": "h" },
       h("h2", {}, "Keys"), list(KEYS, "pairs"), h("h2", {}, "Mouse and touch"), list(GESTURES), close);
     close.addEventListener("click", () => this.element.close());
     this.element.addEventListener("click", (e) => {

@@ -1,15 +1,16 @@
 // The page of sinew view: puts its parts together. docs/view.md says what it does.
 import * as THREE from "three";
+import { Around } from "./around";
 import { ColorBar, ScaleBar } from "./colorbar";
 import { CompareControl } from "./compare";
 import { Connection } from "./connection";
 import { CutControl } from "./cut";
-import { download, h, iconButton, setIcon } from "./dom";
+import { h, iconButton, setIcon } from "./dom";
 import { digits, length } from "./format";
 import { Help } from "./help";
 import { PLAIN, ViewOptions } from "./options";
 import { Panel } from "./panel";
-import type { Command, Frame, SceneInfo, Status, Text } from "./protocol";
+import type { Command, Frame, SceneInfo, Status, Text, Vec } from "./protocol";
 import { PROTOCOL } from "./protocol";
 import "./style.css";
 import "./tools.css";
@@ -39,6 +40,7 @@ class App {
   private readonly scale = new ScaleBar();
   private readonly help = new Help();
   private readonly connection: Connection;
+  private readonly around: Around;
 
   private scene: SceneInfo | null = null;
   private status: Status | null = null;
@@ -52,14 +54,19 @@ class App {
   private readonly clock = h("span", { class: "clock" }, "0.00 s");
   private readonly speed = h("span", { class: "badge" }, "paused");
   private readonly limit = h("div", { id: "limit", role: "status" });
-  private readonly alert = h("div", { id: "alert", role: "alert" });
   private readonly role = h("button", { type: "button", class: "text", id: "take-control" }, "Take the controls");
   private readonly lost = h("div", { id: "lost", role: "status" }, "Connecting …");
   private readonly play = iconButton("play", "Run", "Space", () => this.togglePlay());
-  private alertTimer: ReturnType<typeof setTimeout> | undefined;
   private errorsSeen = -1;
 
   constructor() {
+    this.around = new Around({
+      canvas: this.stage.canvas,
+      send: (c) => this.send(c),
+      picture: (done) => this.stage.picture(done),
+      draw: () => this.stage.changed(),
+      resized: () => this.resize(),
+    });
     this.layOut();
     this.connection = new Connection({
       text: (m) => this.hear(m),
@@ -99,6 +106,7 @@ class App {
       ball: spheres.ballAt,
       obstacles: spheres.obstaclesAt,
       drawn: this.framesDrawn,
+      samples: this.around.plots.history.length,
       /** Where a node is on the page [px]. */
       onPage: (node: number) => {
         const p = tissue.point(node, new THREE.Vector3()).project(this.stage.camera);
@@ -106,6 +114,12 @@ class App {
         return [r.left + 0.5 * r.width * (1 + p.x), r.top + 0.5 * r.height * (1 - p.y)];
       },
     };
+  }
+
+  /** For the pictures of the documentation: sees everything as it is now, from a direction, with so much
+   * room around it (1: none). */
+  look(from: Vec, room?: number): void {
+    this.world.look(from, room);
   }
 
   private layOut(): void {
@@ -120,18 +134,16 @@ class App {
       h("span", { class: "line" }), this.clock, this.speed,
       h("span", { class: "line" }), ...this.tools.buttons);
     const corner = h("div", { id: "corner", role: "toolbar", "aria-label": "More" },
-      this.role,
+      this.role, ...this.around.buttons,
       iconButton("home", "Whole body in view", "F", () => this.stage.goHome()),
-      iconButton("camera", "Save a picture", "", () => this.savePicture()),
-      iconButton("file", "Save the scene with its values", "", () => void this.saveScene()),
       iconButton("options", "What is shown", "V", () => this.toggleOptions()),
       iconButton("help", "Help", "H", () => this.help.toggle()),
       iconButton("panel", "Panel", "P", () => this.togglePanel()));
     document.querySelector("#ui")!.append(
       h("header", {}, h("div", { class: "heading" }, this.title, this.lookFor, this.bar.element), corner),
       this.panel.element, this.options.element, this.scale.element,
-      h("footer", {}, this.limit, this.tools.card, transport),
-      this.alert, this.lost, this.help.element);
+      h("footer", {}, this.around.hint.element, this.limit, this.tools.card, transport),
+      this.lost, this.help.element, ...this.around.elements);
     this.role.hidden = true;
     if (innerWidth < NARROW) document.body.classList.add("no-panel", "no-options");
   }
@@ -144,6 +156,7 @@ class App {
   // ---- what the server says ----
 
   private hear(message: Text): void {
+    this.around.hear(message, performance.now());
     switch (message.type) {
       case "hello":
         this.protocolFault = message.protocol !== PROTOCOL;
@@ -201,6 +214,7 @@ class App {
     if (is) return;
     this.lost.textContent = this.scene ? "Connection lost – trying again …" : "Connecting …";
     this.setControls(false);
+    this.around.disconnected();
   }
 
   private setControls(have: boolean): void {
@@ -215,10 +229,7 @@ class App {
   }
 
   private complain(message: string): void {
-    this.alert.textContent = message;
-    this.alert.classList.add("on");
-    clearTimeout(this.alertTimer);
-    this.alertTimer = setTimeout(() => this.alert.classList.remove("on"), 9000);
+    this.around.complain(message);
   }
 
   // ---- what the user does ----
@@ -244,16 +255,6 @@ class App {
     this.resize();
   }
 
-  private savePicture(): void {
-    this.stage.picture((png) => png && download(`${this.scene?.name ?? "sinew"}.png`, png));
-  }
-
-  private async saveScene(): Promise<void> {
-    const answer = await fetch(`/scene.toml${location.search}`);
-    if (answer.ok) download(`${this.scene?.name ?? "scene"}.toml`, await answer.blob());
-    else this.complain("The scene could not be had");
-  }
-
   private key(event: KeyboardEvent): void {
     const at = event.target as HTMLElement;
     if (event.ctrlKey || event.metaKey || event.altKey || at.closest("select, input:not([type=checkbox]):not([type=range])")) return;
@@ -277,13 +278,14 @@ class App {
       f: () => this.stage.goHome(),
       p: () => this.togglePanel(),
       h: () => this.help.toggle(),
-      "?": () => this.help.toggle(),
+      ...this.around.keys,
     };
-    const name = event.key.toLowerCase();
+    const name = event.key === "?" ? "h" : event.key.toLowerCase();
     // The space bar presses the button that has the focus, as everywhere.
     if (name === " " && at.closest("button, input[type=checkbox], summary")) return;
     const action = actions[name];
-    if (!action || (this.help.element.open && name !== "h" && name !== "?")) return;
+    const dialog = document.querySelector<HTMLElement>("dialog[open]"); // only its own key does anything
+    if (!action || (dialog && dialog.dataset.key !== name)) return;
     event.preventDefault();
     action();
   }

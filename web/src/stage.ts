@@ -26,7 +26,7 @@ const GRID_FRAGMENT = `
   void main() {
     vec2 at = vec2(dot(place - middle, across), dot(place - middle, along)) / cell;
     float fade = 1.0 - smoothstep(0.25, 1.0, length(place - middle) / reach);
-    float strength = max(0.22 * lines(at), 0.5 * lines(at / 10.0));
+    float strength = max(0.13 * lines(at), 0.3 * lines(at / 10.0));
     gl_FragColor = vec4(vec3(0.72, 0.8, 0.88), strength * fade);
     if (gl_FragColor.a < 0.004) discard;
   }`;
@@ -88,7 +88,9 @@ export class Stage {
     rim.position.set(-2, 1.2, -2.5);
     this.scene.add(this.sun, this.sun.target, rim, new THREE.HemisphereLight(0xcfe0f2, 0x3a322d, 0.55));
 
-    this.floor = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), new THREE.ShadowMaterial({ opacity: 0.42 }));
+    // It lies in the plane of the grid, which must not be lost behind it.
+    const shade = new THREE.ShadowMaterial({ opacity: 0.42, depthWrite: false });
+    this.floor = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), shade);
     this.floor.receiveShadow = true;
     this.grid = new THREE.Mesh(
       new THREE.PlaneGeometry(1, 1),
@@ -161,7 +163,7 @@ export class Stage {
   }
 
   /** Where the camera sees all of it, from a direction, beside what lies over the view. */
-  private placeFor(boxes: THREE.Box3[], direction: THREE.Vector3): Place {
+  private placeFor(boxes: THREE.Box3[], direction: THREE.Vector3, room = ROOM): Place {
     const all = new THREE.Box3();
     for (const box of boxes) all.union(box);
     const target = all.getCenter(new THREE.Vector3());
@@ -171,7 +173,7 @@ export class Stage {
     let distance = 1e-6;
     for (const corner of boxes.flatMap(cornersOf)) {
       corner.sub(target).applyMatrix4(turn); // z towards the viewer
-      distance = Math.max(distance, corner.z + ROOM * Math.max(Math.abs(corner.x) / right, Math.abs(corner.y) / up));
+      distance = Math.max(distance, corner.z + room * Math.max(Math.abs(corner.x) / right, Math.abs(corner.y) / up));
     }
     return { target, position: target.clone().addScaledVector(direction, distance) };
   }
@@ -181,11 +183,21 @@ export class Stage {
     this.controls.enableDamping = false; // what still swings on ends
     this.controls.update();
     this.controls.enableDamping = true;
-    const { position, target } = this.home();
+    this.place(this.home());
+  }
+
+  /** Sees these bounds from a direction, at once. */
+  look(boxes: THREE.Box3[], direction: THREE.Vector3, room = ROOM): void {
+    this.glide = null;
+    this.place(this.placeFor(boxes, direction, room));
+  }
+
+  private place({ position, target }: Place): void {
     this.camera.position.copy(position);
     this.controls.target.copy(target);
     this.camera.updateProjectionMatrix();
     this.controls.update();
+    this.changed();
   }
 
   /** The direction from what is seen to who sees it. */
@@ -200,7 +212,7 @@ export class Stage {
 
   /** `covered`: pixels on the right that something lies over; the view is centred beside it. */
   resize(width: number, height: number, covered: number): void {
-    this.renderer.setPixelRatio(this.modest ? 0.75 : Math.min(window.devicePixelRatio, 2));
+    this.renderer.setPixelRatio(this.modest ? 0.75 * Math.min(window.devicePixelRatio, 1) : Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
     this.camera.aspect = width / Math.max(1, height);
     this.covered = covered;

@@ -6,7 +6,7 @@ import { titlesOf } from "./compare";
 import { Hands } from "./hands";
 import type { Shown } from "./options";
 import { Picker } from "./picker";
-import type { Command, Frame, SceneInfo, Status, Topology } from "./protocol";
+import type { Command, Frame, SceneInfo, Status, Topology, Vec } from "./protocol";
 import { Spheres } from "./spheres";
 import { cornersOf, Stage } from "./stage";
 import { Tissue } from "./tissue";
@@ -139,6 +139,14 @@ export class World {
     if (this.shown) this.tissue.show(this.shown, this.colored ? this.scene : null, performance.now());
     if (!was.equals(compared.shift)) this.stage.include([this.box, this.box.clone().translate(compared.shift)]);
     this.stage.changed();
+  }
+
+  /** Sees body and obstacles as they are now, from a direction. */
+  look(from: Vec, room?: number): void {
+    const radii = this.scene?.obstacles.map((o) => o.radius) ?? [];
+    const boxes = this.spheres.obstaclesAt.map((at, i) =>
+      new THREE.Box3().setFromCenterAndSize(new THREE.Vector3(...at), new THREE.Vector3().setScalar(2 * radii[i])));
+    this.stage.look([this.tissue.box, ...boxes], new THREE.Vector3(...from).normalize(), room);
   }
 
   releaseAll(): void {

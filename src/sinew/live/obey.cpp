@@ -88,6 +88,7 @@ void Simulation::act(const Load& c) {
     throw;
   }
   running_ = false;
+  fell_behind_ = false;
   other_.reset();
   compare_.clear();
   ++opened_;
@@ -154,6 +155,7 @@ void Simulation::act(const SetStepping& c) {
   require_plain(c.value);
   if (c.key != "stepper" || c.value != "live") return change({c.key + "=" + c.value});
   const State keep = run_.state;
+  fell_behind_ = false;
   rebuild(without_steps(scene_), &keep);
 }
 
@@ -230,6 +232,7 @@ void Simulation::act(const RemoveBall&) {
 
 // The scene with other values, going on from where the nodes are.
 void Simulation::change(const std::vector<std::string>& overrides) {
+  fell_behind_ = false;
   const State keep = run_.state;
   const Scene changed = with(scene_, overrides);
   try {

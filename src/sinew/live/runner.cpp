@@ -175,6 +175,9 @@ void Runner::publish() {
   if (now - status_at_ >= between_status) {
     Status status = simulation_.status();
     status.rate = rate_;
+    if (status.limit.empty() && rate_ > 0.0 && rate_ < 0.9 * status.time_scale) {
+      status.limit = "the machine has other things to do as well";
+    }
     next.status = std::make_shared<Status>(std::move(status));
     status_at_ = now;
   }

@@ -92,6 +92,7 @@ class Simulation {
   void tell_other(const Command& command);
   bool catch_up(Clock::time_point deadline, const std::atomic<bool>* hurry);
   void note_pair();
+  void keep_pace();
   double size() const { return static_cast<double>(topology_->diagonal); }
   bool steps(Clock::time_point deadline, const std::atomic<bool>* hurry, bool only_one);
   double capacity() const;
@@ -112,6 +113,7 @@ class Simulation {
   Quantity quantity_ = Quantity::displacement;
   double time_scale_ = 1.0;
   bool running_ = false;
+  bool fell_behind_ = false;  // with explicit steps, since a value was changed
   std::uint64_t frames_ = 0;
   std::uint32_t revision_ = 0, opened_ = 0, changes_ = 0, errors_ = 0;
   std::string error_;

@@ -1,0 +1,45 @@
+// Says that files are on their way or a scene is being opened, until it is there.
+import { h } from "./dom";
+
+export class Opening {
+  readonly element: HTMLElement;
+  private readonly text = h("span");
+  private readonly bar = h("progress", { max: 1, "aria-label": "Sent" });
+  private opened = -1; // scenes that the server had opened when this began
+  private latest = 0;
+  pending = false;
+
+  constructor() {
+    this.element = h("div", { id: "opening", role: "status", hidden: true }, h("i", { class: "spinner", "aria-hidden": "true" }), this.text, this.bar);
+  }
+
+  /** `share` of a file that has been sent. */
+  sending(name: string, share: number): void {
+    this.show(`Sending ${name} …`);
+    this.bar.hidden = false;
+    this.bar.value = share;
+  }
+
+  begin(title: string): void {
+    this.show(`Opening ${title} …`);
+    this.bar.hidden = true;
+    this.opened = this.latest;
+    this.pending = true;
+  }
+
+  /** A scene is there, with the count of those opened. */
+  scene(opened: number): void {
+    this.latest = opened;
+    if (this.pending && opened > this.opened) this.end();
+  }
+
+  end(): void {
+    this.pending = false;
+    this.element.hidden = true;
+  }
+
+  private show(text: string): void {
+    this.element.hidden = false;
+    if (this.text.textContent !== text) this.text.textContent = text;
+  }
+}
