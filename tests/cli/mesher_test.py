@@ -8,6 +8,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import signal
 import struct
 import subprocess
@@ -16,7 +17,7 @@ import unittest
 
 import mesher_surfaces as surfaces
 import numpy as np
-from cli_support import BIN, INPUT, IO, SCENES, USAGE, CliTest
+from cli_support import BIN, INPUT, IO, ROOT, SCENES, USAGE, CliTest
 from mesh_commands_test import medit_sections
 from mesher_surfaces import ball, box, join, moved, without
 
@@ -352,6 +353,15 @@ class MesherTest(CliTest):
         out = self.mesh("--help").stdout
         self.assertIn("  sinew-mesh organ.stl --scale 0.001 --size 6mm -o organ.vtu", out)
         self.assertRegex(self.mesh("--version").stdout, r"sinew-mesh \d")
+
+    def test_completions_know_every_option(self):
+        options = set(re.findall(r"^  (?:-\w,)?--([\w-]+)", self.mesh("--help").stdout, re.MULTILINE))
+        self.assertIn("size", options)
+        for shell in ["bash", "zsh", "fish"]:
+            text = (ROOT / "completions" / f"sinew.{shell}").read_text(encoding="utf-8")
+            text = text[text.index("sinew-mesh", 40):] if shell != "bash" else text
+            for option in options:
+                self.assertRegex(text, (r"-l " if shell == "fish" else "--") + rf"{option}\b")
 
     def test_an_interrupt_leaves_nothing(self):
         self.surface("s.off", ball())
