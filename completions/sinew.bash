@@ -76,4 +76,21 @@ _sinew() {
   esac
 }
 
+_sinew_mesh() {
+  local cur=${COMP_WORDS[COMP_CWORD]}
+  COMPREPLY=()
+  case ${COMP_WORDS[COMP_CWORD - 1]} in
+    --size | --distance | --sharp | --scale) return ;;
+    -o | --out)
+      _sinew_files mesh msh vtk vtu node ele
+      return
+      ;;
+  esac
+  case $cur in
+    -*) _sinew_words "-o --out --size --distance --sharp --scale --repair --force --json -q --quiet --version --help" ;;
+    *) _sinew_files off obj stl ply inr nii gz ;;
+  esac
+}
+
 complete -F _sinew sinew
+complete -F _sinew_mesh sinew-mesh

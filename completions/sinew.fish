@@ -96,3 +96,19 @@ complete -c sinew -n $bench -s q -l quiet -d 'No progress and no table'
 complete -c sinew -n '__fish_seen_subcommand_from completion' -a 'bash zsh fish'
 set -l any '__fish_seen_subcommand_from run resume info convert identify converge validate materials bench completion'
 complete -c sinew -n $any -l help -d 'Show help'
+
+complete -c sinew-mesh -f
+for suffix in .off .obj .stl .ply .inr .inr.gz .nii .nii.gz
+    complete -c sinew-mesh -a "(__fish_complete_suffix $suffix)"
+end
+complete -c sinew-mesh -s o -l out -r -d 'Mesh to write'
+complete -c sinew-mesh -l size -x -d 'Mean edge length: 6mm'
+complete -c sinew-mesh -l distance -x -d 'Largest distance from the surface'
+complete -c sinew-mesh -l sharp -x -d 'Keep edges sharper than this [degrees]'
+complete -c sinew-mesh -l scale -x -d 'Factor from the unit of the file to metres'
+complete -c sinew-mesh -l repair -d 'Fill holes, unite parts, drop walls first'
+complete -c sinew-mesh -l force -d 'Replace existing files'
+complete -c sinew-mesh -l json -d 'Print JSON'
+complete -c sinew-mesh -s q -l quiet -d 'Print errors only'
+complete -c sinew-mesh -l version -d 'Show the version'
+complete -c sinew-mesh -l help -d 'Show help'

@@ -1,9 +1,22 @@
-#compdef sinew
+#compdef sinew sinew-mesh
 # zsh completion for sinew. Put it where zsh looks for completions, under the name _sinew:
 #   sinew completion zsh > "${fpath[1]}/_sinew"
 
 _sinew() {
   local context state line
+  if [[ $service == sinew-mesh ]]; then
+    _arguments '(-o --out)'{-o,--out}'[Mesh to write]:mesh:_files -g "*.(mesh|msh|vtk|vtu|node|ele)(-.)"' \
+      '--size[Mean edge length, 6mm]:length:' \
+      '--distance[Largest distance from the surface]:length:' \
+      '--sharp[Keep edges sharper than this, degrees]:angle:' \
+      '--scale[Factor from the unit of the file to metres]:factor:' \
+      '--repair[Fill holes, unite parts, drop walls first]' \
+      '--force[Replace existing files]' '--json[Print JSON]' \
+      '(-q --quiet)'{-q,--quiet}'[Print errors only]' \
+      '--version[Show the version]' '--help[Show help]' \
+      '1:surface or image:_files -g "*.(off|obj|stl|ply|inr|inr.gz|nii|nii.gz)(-.)"'
+    return
+  fi
   local -a meshes=('*.(mesh|msh|vtk|vtu|node|ele)(-.)' '*(-/)')
   _arguments -C '--help[Show help]' '--version[Show the version]' '1:command:->command' '*::args:->args'
   case $state in
@@ -114,4 +127,4 @@ _sinew() {
   esac
 }
 
-if [ "$funcstack[1]" = _sinew ]; then _sinew "$@"; else compdef _sinew sinew; fi
+if [ "$funcstack[1]" = _sinew ]; then _sinew "$@"; else compdef _sinew sinew sinew-mesh; fi

@@ -8,7 +8,9 @@
 
 #include "sinew/base/error.h"
 #include "sinew/io/gmsh.h"
+#include "sinew/io/image.h"
 #include "sinew/io/medit.h"
+#include "sinew/io/surface_file.h"
 #include "sinew/io/tetgen.h"
 #include "sinew/io/vtk.h"
 #include "sinew/io/vtu.h"
@@ -69,6 +71,41 @@ inline void vtk(std::string_view bytes) {
 
 inline void vtu(std::string_view bytes) {
   mesh_or_error([&] { return io::parse_vtu(bytes, "fuzz.vtu"); });
+}
+
+// All formats of surfaces; the bytes of one are hardly ever those of another.
+inline void surface(std::string_view bytes) {
+  for (const auto parse : {io::parse_off, io::parse_obj, io::parse_stl, io::parse_ply}) {
+    try {
+      const io::SurfaceSoup soup = parse(bytes, "fuzz.surface");
+      if (soup.triangles.empty()) std::abort();
+      for (const Triangle& t : soup.triangles) {
+        for (const Index node : t) {
+          if (node < 0 || uz(node) >= soup.nodes.size()) std::abort();
+        }
+      }
+      for (const Vec3& x : soup.nodes) {
+        if (!x.allFinite()) std::abort();
+      }
+    } catch (const Error&) {
+    }
+  }
+}
+
+inline void image(std::string_view bytes) {
+  for (const auto parse : {io::parse_inr, io::parse_nifti}) {
+    try {
+      const io::LabelImage image = parse(bytes, "fuzz.image");
+      if (image.voxels.size() != uz(image.size[0]) * uz(image.size[1]) * uz(image.size[2])) {
+        std::abort();
+      }
+      for (const std::uint8_t voxel : image.voxels) {
+        if (voxel >= image.labels.size()) std::abort();
+      }
+      if (!image.axes.allFinite() || !image.origin.allFinite()) std::abort();
+    } catch (const Error&) {
+    }
+  }
 }
 
 }  // namespace sinew::fuzz

@@ -42,6 +42,12 @@ TEST(Corpus, Vtk) {
 TEST(Corpus, Vtu) {
   replay("vtu", fuzz::vtu);
 }
+TEST(Corpus, Surface) {
+  replay("surface", fuzz::surface);
+}
+TEST(Corpus, Image) {
+  replay("image", fuzz::image);
+}
 
 }  // namespace
 }  // namespace sinew::io

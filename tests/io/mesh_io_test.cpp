@@ -211,7 +211,7 @@ TEST_F(MeshIo, UnknownEndings) {
   EXPECT_EQ(
       error_of("liver.stl"),
       "liver.stl: has the unknown ending \".stl\"\n  remedy: this is a surface format: fill it "
-      "with tetrahedra first (TetGen, Gmsh, fTetWild); known endings: .mesh .msh .node .ele "
+      "with tetrahedra first (sinew-mesh, TetGen, Gmsh); known endings: .mesh .msh .node .ele "
       ".vtk .vtu");
   EXPECT_EQ(
       error_of("liver.meshb"),

@@ -127,7 +127,7 @@ void require_tets(const TetMesh& mesh, const std::string& file) {
   }
   throw Error(ErrorKind::input,
               fmt::format("holds no tetrahedra, only triangles ({})", mesh.faces.size()),
-              "fill the surface with tetrahedra first (TetGen, Gmsh, fTetWild), or export the "
+              "fill the surface with tetrahedra first (sinew-mesh, TetGen, Gmsh), or export the "
               "volume mesh",
               {file, 0, 0});
 }

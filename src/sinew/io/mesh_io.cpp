@@ -29,8 +29,8 @@ std::string lower_ending(const fs::path& path) {
     remedy = "convert the binary MEDIT file to text (.mesh) first, for example with medit or Gmsh";
   } else if (ending == ".stl" || ending == ".obj" || ending == ".off" || ending == ".ply") {
     remedy = fmt::format(
-        "this is a surface format: fill it with tetrahedra first (TetGen, Gmsh, "
-        "fTetWild); {}",
+        "this is a surface format: fill it with tetrahedra first (sinew-mesh, TetGen, "
+        "Gmsh); {}",
         remedy);
   }
   throw Error(ErrorKind::input,
