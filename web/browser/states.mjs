@@ -65,7 +65,7 @@ export const states = [
     async show(page) {
       await page.selectOption("#coloring", "displacement");
       await page.getByRole("button", { name: "Push with a ball" }).click();
-      await runUntil(page, 1);
+      await runUntil(page, 1.6);
       await press(page, 0.36, 0.45);
       await until(page, () => window.sinew.state.status.ball?.contacts > 0);
       for (let i = 0; i < 4; ++i) await page.keyboard.press("]");

@@ -24,6 +24,11 @@ const reset = async (page) => {
   await page.keyboard.press("r");
   await until(page, () => window.sinew.state.status.time === 0 && window.sinew.state.time === 0);
 };
+/** Runs until the liver no longer swings away from under the pointer. */
+const settled = async (page) => {
+  await run(page, true);
+  await until(page, () => window.sinew.state.time > 1.5, null, 120);
+};
 const nodes = (page) => page.evaluate(() => window.sinew.state.rest.length / 3);
 const ballTool = async (page) => {
   await page.getByRole("button", { name: "Push with a ball" }).click();
@@ -33,7 +38,7 @@ const ballTool = async (page) => {
 test("the ball goes in while it is held, is shown where it is, and goes away", () =>
   visit(browser, liver.url, { width: 1280, height: 720 }, async (page) => {
     await reset(page);
-    await run(page, true);
+    await settled(page);
     await ballTool(page);
     const camera = await state(page, "camera");
     const { at } = await nodeInFront(page);
@@ -71,7 +76,7 @@ test("the ball's radius is set beside the tool; T goes through the tools", () =>
     await radius.focus();
     await page.keyboard.press("Home");
     await page.waitForTimeout(100); // sliders tell no faster than every 50 ms
-    await run(page, true);
+    await settled(page);
     const { at } = await nodeInFront(page);
     await page.mouse.move(...at);
     await page.mouse.down();
