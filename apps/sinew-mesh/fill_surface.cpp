@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "quiet_cgal.h"  // first
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/orient_polygon_soup.h>
 #include <CGAL/Polygon_mesh_processing/polygon_soup_to_polygon_mesh.h>
@@ -39,18 +41,19 @@ Surface to_mesh(const io::SurfaceSoup& soup, const Vec3& centre, double unit) {
   return mesh;
 }
 
-// Nodes of one part that lie far from each other: each is the farthest from those before it.
-std::vector<Index> spread(const std::vector<Index>& nodes, const std::vector<Vec3>& x) {
-  std::vector<Index> chosen = {nodes.front()};
-  std::vector<double> distance(nodes.size(), std::numeric_limits<double>::infinity());
-  while (chosen.size() < std::min(start_points, nodes.size())) {
+// Triangles of one part that lie far from each other: each is the farthest from those before it.
+std::vector<Index> spread(const std::vector<Index>& triangles, const std::vector<Vec3>& middle) {
+  std::vector<Index> chosen = {triangles.front()};
+  std::vector<double> distance(triangles.size(), std::numeric_limits<double>::infinity());
+  while (chosen.size() < std::min(start_points, triangles.size())) {
+    const Vec3& last = middle[uz(chosen.back())];
     std::size_t farthest = 0;
-    for (std::size_t i = 0; i < nodes.size(); ++i) {
-      distance[i] = std::min(distance[i], (x[uz(nodes[i])] - x[uz(chosen.back())]).squaredNorm());
+    for (std::size_t i = 0; i < triangles.size(); ++i) {
+      distance[i] = std::min(distance[i], (middle[uz(triangles[i])] - last).squaredNorm());
       if (distance[i] > distance[farthest]) farthest = i;
     }
     if (!(distance[farthest] > 0)) break;
-    chosen.push_back(nodes[farthest]);
+    chosen.push_back(triangles[farthest]);
   }
   return chosen;
 }
@@ -83,16 +86,20 @@ TetMesh fill_surface(const io::SurfaceSoup& soup, Target target, Progress& progr
   std::vector<std::pair<Point, Domain::Index>> start;
   const Components parts =
       connected_components(soup.triangles, static_cast<Index>(soup.nodes.size()));
-  std::vector<std::vector<Index>> nodes(uz(parts.count));
+  // Points within triangles, nowhere special: CGAL gives up where two nodes coincide.
+  std::vector<std::vector<Index>> triangles(uz(parts.count));
+  std::vector<Vec3> middle;
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {
-    for (const Index n : soup.triangles[t]) nodes[uz(parts.of[t])].push_back(n);
+    const Triangle& corners = soup.triangles[t];
+    triangles[uz(parts.of[t])].push_back(static_cast<Index>(t));
+    middle.push_back((0.31 * soup.nodes[uz(corners[0])] + 0.36 * soup.nodes[uz(corners[1])] +
+                      0.33 * soup.nodes[uz(corners[2])] - centre) /
+                     unit);
   }
   const auto patch = Domain::Surface_patch_index(1);
-  for (std::vector<Index>& part : nodes) {
-    std::sort(part.begin(), part.end());
-    part.erase(std::unique(part.begin(), part.end()), part.end());
-    for (const Index n : spread(part, soup.nodes)) {
-      const Vec3 y = (soup.nodes[uz(n)] - centre) / unit;
+  for (const std::vector<Index>& part : triangles) {
+    for (const Index t : spread(part, middle)) {
+      const Vec3& y = middle[uz(t)];
       start.emplace_back(Point(y.x(), y.y(), y.z()), domain.index_from_surface_patch_index(patch));
     }
   }

@@ -2,6 +2,8 @@
 // What meshing surfaces and images share: from a CGAL domain to tets.
 #pragma once
 
+#include "quiet_cgal.h"  // first
+
 #include <fmt/format.h>
 
 #include <CGAL/Mesh_complex_3_in_triangulation_3.h>
@@ -28,6 +30,8 @@ constexpr double kRadiusOfSize = 0.8;
 // A tet whose smallest dihedral angle is below this [degrees] is moved or reweighted away, where
 // that is possible.
 constexpr double kSliverBound = 12;
+
+constexpr int kAttempts = 4;  // after the first
 
 // Turns the complex into plain arrays. Label of a tet: its subdomain; of a face: from patch_label.
 template <class C3t3, class PatchLabel>
@@ -119,18 +123,28 @@ TetMesh generate(
   return to_tet_mesh(c3t3, patch_label);
 }
 
-// generate(), and where CGAL gives up, an Error (input) that says so.
+// generate(). CGAL gives up where a new node falls exactly on an old one: a slightly smaller size
+// then avoids that. Error (input) where it does not.
 template <class Domain, class CornerIndex, class CurveIndex, class Start, class PatchLabel>
 TetMesh fill(const Domain& domain, const Start& start, const Target& target,
              const PatchLabel& patch_label, Progress& progress) {
-  try {
-    return generate<Domain, CornerIndex, CurveIndex>(domain, start, target, patch_label, progress);
-  } catch (const CGAL::Failure_exception& e) {
-    throw Error(
-        ErrorKind::input,
-        fmt::format("CGAL could not fill it at this size ({}:{})", e.filename(), e.line_number()),
-        target.sharp ? "take another --size, a larger --sharp angle, or none"
-                     : "take another --size");
+  Target now = target;
+  for (int attempt = 0;; ++attempt) {
+    try {
+      return generate<Domain, CornerIndex, CurveIndex>(domain, start, now, patch_label, progress);
+    } catch (const CGAL::Failure_exception& e) {
+      if (attempt < kAttempts) {
+        now.size *= 0.985;
+        now.distance *= 0.985;
+        continue;
+      }
+      const std::string file = e.filename();
+      throw Error(ErrorKind::input,
+                  fmt::format("CGAL could not fill it at this size ({}:{})",
+                              file.substr(file.rfind('/') + 1), e.line_number()),
+                  target.sharp ? "take another --size, a larger --sharp angle, or none"
+                               : "take another --size");
+    }
   }
 }
 
