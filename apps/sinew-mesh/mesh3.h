@@ -67,9 +67,12 @@ TetMesh to_tet_mesh(const C3t3& c3t3, const PatchLabel& patch_label) {
   return mesh;
 }
 
+// The surface cannot be made one without hinges at this size.
+struct NotManifold {};
+
 // Delaunay refinement from the given points on the surface, then perturbation and exudation of
 // slivers. Lengths of the target are in the domain's unit. Error (input) where more than the
-// target's limit of nodes would be needed.
+// target's limit of nodes would be needed; NotManifold where that is asked for and cannot be.
 template <class Domain, class CornerIndex, class CurveIndex, class PatchLabel>
 TetMesh generate(
     const Domain& domain,
@@ -96,24 +99,32 @@ TetMesh generate(
   }
   for (const auto& [point, index] : start) {
     const auto v = c3t3.triangulation().insert(typename Tr::Weighted_point(point));
-    if (v == typename C3t3::Vertex_handle() || v->in_dimension() >= 0)
-      continue;  // hidden, or a
-                 // sharp one
+    // Not a vertex: hidden by a protected one. One that has a dimension: on a sharp edge.
+    if (v == typename C3t3::Vertex_handle() || v->in_dimension() >= 0) continue;
     c3t3.set_dimension(v, 2);
     c3t3.set_index(v, index);
   }
   progress.phase("refining");
-  CGAL::refine_mesh_3(c3t3, domain, criteria, param::no_reset_c3t3(), param::no_exude(),
-                      param::no_perturb(), param::no_lloyd(), param::no_odt(),
-                      param::mesh_3_options(param::maximal_number_of_vertices = target.most_nodes,
-                                            param::pointer_to_error_code = &code),
-                      target.manifold ? param::manifold() : param::non_manifold());
+  const auto refine = [&](std::size_t most, const param::internal::Manifold_options& manifold) {
+    CGAL::refine_mesh_3(c3t3, domain, criteria, param::no_reset_c3t3(), param::no_exude(),
+                        param::no_perturb(), param::no_lloyd(), param::no_odt(),
+                        param::mesh_3_options(param::maximal_number_of_vertices = most,
+                                              param::pointer_to_error_code = &code),
+                        manifold);
+  };
+  refine(target.most_nodes, param::non_manifold());
   if (code == CGAL::CGAL_MESH_3_MAXIMAL_NUMBER_OF_VERTICES_REACHED) {
     throw Error(
         ErrorKind::input,
         fmt::format("cannot be filled at this size: {} nodes do not suffice", target.most_nodes),
         target.sharp ? "take a larger --size, a larger --sharp angle, or none"
                      : "take a larger --size, or --sharp 60 to keep its sharp edges");
+  }
+  if (target.manifold) {
+    // Where the surface all but touches itself this need not end: no more than a thin body takes.
+    progress.phase("parting what touches");
+    refine(2 * c3t3.triangulation().number_of_vertices() + 20'000, param::manifold());
+    if (code == CGAL::CGAL_MESH_3_MAXIMAL_NUMBER_OF_VERTICES_REACHED) throw NotManifold();
   }
   progress.phase("moving slivers");
   CGAL::perturb_mesh_3(c3t3, domain, param::sliver_bound = kSliverBound);
@@ -132,6 +143,8 @@ TetMesh fill(const Domain& domain, const Start& start, const Target& target,
   for (int attempt = 0;; ++attempt) {
     try {
       return generate<Domain, CornerIndex, CurveIndex>(domain, start, now, patch_label, progress);
+    } catch (const NotManifold&) {
+      now.manifold = false;  // the report tells of the hinges
     } catch (const CGAL::Failure_exception& e) {
       if (attempt < kAttempts) {
         now.size *= 0.985;
