@@ -309,6 +309,7 @@ TEST_F(ServerTest, FilesOfTheViewerWithTheControlsAreOpened) {
   c.say(R"({"type":"open","file":"bad.toml"})");
   const auto status = c.hear_text("bad.toml:1");
   ASSERT_TRUE(status);
+  EXPECT_EQ(status->find("sinew-view-"), std::string::npos) << "as the viewer named it";
   c.say(R"({"type":"open","file":"nothing.toml"})");
   EXPECT_TRUE(c.hear_text("no such file"));
   expect_alive();

@@ -55,8 +55,9 @@ export const states = [
       await page.selectOption("#coloring", "stress");
       await page.keyboard.press("x");
       await until(page, () => window.sinew.state.scene.cut !== null);
-      await runUntil(page, 1.6);
-      await drawn(page);
+      await runUntil(page, 4); // the range of the colours has come down from the first swing
+      await page.keyboard.press("Space");
+      await until(page, () => !window.sinew.state.status.running && document.querySelector("#limit").textContent === "");
     },
   },
   {

@@ -15,8 +15,8 @@ const browsers = [process.env.SINEW_CHROMIUM, "/usr/bin/chromium", "/usr/bin/chr
 
 /** Starts sinew view and gives its address; `stop` ends it by Ctrl-C and gives the exit code. Without
  * a scene (null) it begins with the gallery. */
-export async function serve(scene, { port = 0, host } = {}) {
-  const child = spawn(sinew, ["view", ...(scene ? [join(root, scene)] : []), "--port", String(port), ...(host ? ["--host", host] : [])], { cwd: root, stdio: ["ignore", "pipe", "inherit"] });
+export async function serve(scene, { port = 0, host, env = {} } = {}) {
+  const child = spawn(sinew, ["view", ...(scene ? [join(root, scene)] : []), "--port", String(port), ...(host ? ["--host", host] : [])], { cwd: root, env: { ...process.env, ...env }, stdio: ["ignore", "pipe", "inherit"] });
   const url = await new Promise((found, failed) => {
     let text = "";
     child.stdout.on("data", (part) => {

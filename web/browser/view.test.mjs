@@ -140,6 +140,23 @@ test("Young's modulus goes to 1 GPa and back while it runs", () =>
     await reset(page);
   }));
 
+test("limits on springs come and go while it runs", () =>
+  visit(browser, server.url, {}, async (page) => {
+    await reset(page);
+    const limit = (value) => until(page, (l) => window.sinew.state.scene.parts.every((p) => p.stretch_limit === l), value);
+    await page.getByLabel("Stretch of springs").selectOption("0.1");
+    await limit(0.1);
+    await page.keyboard.press("Escape");
+    await page.locator("#view").focus();
+    await page.keyboard.press("Space");
+    await until(page, () => window.sinew.state.time > 0.1);
+    await paused(page);
+    assert.ok((await state(page, "status")).max_stretch < 0.12);
+    await page.getByLabel("Stretch of springs").selectOption("inf");
+    await limit(null);
+    await reset(page);
+  }));
+
 test("two may watch, one has the controls, the other may take them", async () => {
   await visit(browser, server.url, { width: 480, height: 320 }, async (first) => {
     await visit(browser, server.url, { width: 480, height: 320 }, async (second) => {
@@ -171,7 +188,7 @@ test("keyboard and screen readers reach everything; the help names the keys", ()
     await page.keyboard.press("Escape");
     await until(page, () => !document.querySelector("#help").open);
     const reached = new Set();
-    for (let i = 0; i < 40; ++i) {
+    for (let i = 0; i < 60; ++i) {
       await page.keyboard.press("Tab");
       reached.add(await page.evaluate(() => document.activeElement.getAttribute("aria-label") ?? document.activeElement.id));
     }

@@ -21,6 +21,15 @@ const DIRECTIONS: [string, Vec][] = [
   ["To the front", [0, 0, 1]],
 ];
 const EVERYTHING = "*";
+/** How far springs may be stretched or compressed, in shares of their length. */
+const LIMITS = ["inf", "0.01", "0.02", "0.05", "0.1", "0.2", "0.5"];
+const limitName = (value: string): string => (value === "inf" ? "Any" : `At most ${percent(Number(value), 2)}`);
+const limits = (label: string) => select(label, LIMITS.map((l) => [l, limitName(l)]));
+const showLimit = (input: HTMLSelectElement, limit: number | null): void => {
+  const value = limit === null ? "inf" : String(limit);
+  fill(input, [...new Set([...LIMITS, value])].map((l) => [l, limitName(l)]));
+  input.value = value;
+};
 
 export class Panel {
   readonly element: HTMLElement;
@@ -32,6 +41,8 @@ export class Panel {
   private readonly density: Slider;
   private readonly damping: Slider;
   private readonly drag: Slider;
+  private readonly stretch = limits("Stretch of springs");
+  private readonly compress = limits("Compression of springs");
   private readonly strength: Slider;
   private readonly direction = select("Direction", DIRECTIONS.map(([name], i) => [String(i), name]));
   private readonly stepper = select("Stepper", STEPPERS);
@@ -55,6 +66,8 @@ export class Panel {
     this.pace = new Slider({ label: "Time scale", low: 0.01, high: 4, log: true, show: (v) => `${digits(v, 2)}×`, changed: (value) => this.send({ type: "time_scale", value }) });
     this.part.input.addEventListener("change", () => this.showPart());
     this.law.input.addEventListener("change", () => this.material("law", this.law.input.value));
+    this.stretch.input.addEventListener("change", () => this.material("stretch_limit", this.stretch.input.value));
+    this.compress.input.addEventListener("change", () => this.material("compress_limit", this.compress.input.value));
     this.direction.input.addEventListener("change", () => this.sendGravity());
     this.stepper.input.addEventListener("change", () => this.send({ type: "stepping", key: "stepper", value: this.stepper.input.value }));
     this.step.input.addEventListener("change", () => {
@@ -64,7 +77,7 @@ export class Panel {
     this.element = h(
       "aside",
       { id: "panel", "aria-label": "Values" },
-      section("Material", this.part.row, this.law.row, this.young.element, this.poisson.element, this.density.element, this.damping.element, this.drag.element),
+      section("Material", this.part.row, this.law.row, this.young.element, this.poisson.element, this.density.element, this.damping.element, this.drag.element, this.stretch.row, this.compress.row),
       ...more,
       section("World", this.strength.element, this.direction.row),
       section("Time", this.stepper.row, this.step.row, this.pace.element, this.facts.element),
@@ -147,6 +160,8 @@ export class Panel {
     this.density.set(part.density);
     this.damping.set(part.damping_ratio);
     this.drag.set(part.drag);
+    showLimit(this.stretch.input, part.stretch_limit);
+    showLimit(this.compress.input, part.compress_limit);
   }
 
   private material(key: string, value: number | string): void {

@@ -15,6 +15,8 @@ export interface Part {
   damping_ratio: number;
   viscosity: number;
   drag: number;
+  stretch_limit: number | null; // null: none
+  compress_limit: number | null;
 }
 
 export interface QuantityInfo {

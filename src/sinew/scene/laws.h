@@ -9,6 +9,7 @@ namespace sinew {
 struct LawChoice {
   std::string name;              // in case.toml, on the command line, in validation.json
   std::string title;             // in tables
+  std::string in_words;          // in the live view
   std::vector<std::string> set;  // keys of a body
   bool classic = false;          // made of springs with a rest length: compared on one mesh only
 };
@@ -16,11 +17,11 @@ struct LawChoice {
 // neo-hookean first: the one under test; then fem: linear tets, the one to beat.
 inline const std::vector<LawChoice>& law_choices() {
   static const std::vector<LawChoice> laws = {
-      {"neo-hookean", "network", {"law=neo-hookean"}, false},
-      {"fem", "linear FEM", {"law=neo-hookean", "beta=1", "volume=tet"}, false},
-      {"calibrated", "calibrated", {"law=calibrated"}, true},
-      {"lloyd", "lloyd", {"law=lloyd"}, true},
-      {"vangelder", "vangelder", {"law=vangelder"}, true},
+      {"neo-hookean", "network", "Neo-Hookean network", {"law=neo-hookean"}, false},
+      {"fem", "linear FEM", "Linear FEM", {"law=neo-hookean", "beta=1", "volume=tet"}, false},
+      {"calibrated", "calibrated", "Calibrated springs", {"law=calibrated"}, true},
+      {"lloyd", "lloyd", "Lloyd’s springs", {"law=lloyd"}, true},
+      {"vangelder", "vangelder", "Van Gelder’s springs", {"law=vangelder"}, true},
   };
   return laws;
 }

@@ -123,6 +123,14 @@ void Library::keep(const std::string& name, std::string_view bytes) {
   kept_[name] = bytes.size();
 }
 
+void Library::leave_out_folder(std::string& text) const {
+  if (folder_.empty()) return;
+  const std::string folder = folder_.string() + "/";
+  for (std::size_t at = text.find(folder); at != std::string::npos; at = text.find(folder, at)) {
+    text.erase(at, folder.size());
+  }
+}
+
 std::function<Scene()> Library::opener(const Open& open) const {
   if (open.file.empty()) {
     for (const Entry& e : entries_) {

@@ -34,6 +34,9 @@ class Library {
   // name that is none or has no ending that can be opened, or too many bytes; Error(io).
   void keep(const std::string& name, std::string_view bytes);
 
+  // Takes the folder of the files given out of a text: a message names files as their viewer does.
+  void leave_out_folder(std::string& text) const;
+
   // Reads what is asked for when it is called, from any thread while the library is there. The
   // function throws what load_scene and scene_around throw; Error(usage) here where there is no
   // such scene or file.

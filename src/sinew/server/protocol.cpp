@@ -295,7 +295,7 @@ std::string scene_text(const live::Parameters& p, const live::Topology& t, std::
   }
   Json laws = Json::array();
   for (const LawChoice& law : law_choices()) {
-    laws.push_back({{"name", law.name}, {"title", law.title}});
+    laws.push_back({{"name", law.name}, {"title", law.in_words}});
   }
   Json scene = {{"type", "scene"},
                 {"opened", p.opened},

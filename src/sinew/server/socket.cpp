@@ -59,6 +59,7 @@ class BeastSocket final : public Socket, public std::enable_shared_from_this<Bea
     if (!next) return;
     writing_ = true;
     outgoing_ = std::move(*next);
+    if (!outgoing_.binary) hub_.library.leave_out_folder(outgoing_.bytes);
     stream_.binary(outgoing_.binary);
     stream_.async_write(net::buffer(outgoing_.bytes),
                         [self = shared_from_this()](Failure failure, std::size_t) {
