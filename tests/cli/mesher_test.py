@@ -314,6 +314,46 @@ class MesherTest(CliTest):
         self.assertIn("no part as large as one tetrahedron", run.stderr)
         self.mesh("speck.inr", "--sharp", 60, "-o", "s.mesh", code=USAGE)
 
+    # --- scenes ---------------------------------------------------------------------------------
+
+    SCENE = """duration = 0.001
+[body.b]
+mesh = "s.off"
+mesh_size = %s
+scale = 0.001
+"""
+
+    def run_scene(self, code=0, size="0.015", mesher=MESHER):
+        self.write("s.toml", self.SCENE % size)
+        env = {**os.environ, "XDG_CACHE_HOME": str(self.dir / "cache"), "SINEW_MESH": mesher}
+        return self.run_sinew("run", "s.toml", "--no-output", "--json", code=code, env=env)
+
+    def test_a_scene_names_a_surface(self):
+        self.surface("s.off", moved(ball(), 50))
+        first = json.loads(self.run_scene().stdout)
+        self.assertGreater(first["bodies"][0]["tets"], 500)
+        kept = list((self.dir / "cache" / "sinew" / "meshes").iterdir())
+        self.assertEqual(len(kept), 1)
+        # The second time the mesher is not asked.
+        again = json.loads(self.run_scene(mesher="/nowhere/sinew-mesh").stdout)
+        self.assertEqual(again["state_hash"], first["state_hash"])
+        # Another size, another mesh.
+        finer = json.loads(self.run_scene(size="0.012").stdout)
+        self.assertGreater(finer["bodies"][0]["tets"], first["bodies"][0]["tets"])
+
+    def test_a_scene_says_why_it_cannot_be_filled(self):
+        self.surface("s.off", without(ball(50), lambda p: min(q[2] for q in p) > 35))
+        run = self.run_scene(code=INPUT)
+        self.assertIn("s.toml:3:", run.stderr)
+        self.assertIn("s.off: cannot be filled: open: 1 hole", run.stderr)
+        run = self.run_scene(code=INPUT, mesher="/nowhere/sinew-mesh")
+        self.assertIn("cannot be started: No such file", run.stderr)
+        self.assertIn("remedy: ./dev mesh builds it", run.stderr)
+        self.assertEqual(list((self.dir / "cache" / "sinew" / "meshes").iterdir()), [])
+        self.write("m.toml", '[body.b]\nshape = "beam"\nmesh_size = 0.1\n')
+        run = self.run_sinew("run", "m.toml", code=INPUT)
+        self.assertIn("'mesh_size' in [body.b] goes with a surface or an image only", run.stderr)
+
     # --- the command ----------------------------------------------------------------------------
 
     def test_the_same_mesh_every_time(self):

@@ -5,6 +5,7 @@
 #include <map>
 #include <numbers>
 
+#include "sinew/scene/filled.h"
 #include "sinew/scene/parse.h"
 #include "sinew/scene/tissues.h"
 
@@ -59,6 +60,10 @@ void parse_source(const Reader& reader, SceneBody& body) {
                 "name a mesh file, relative to the scene's folder");
   body.mesh_where = reader.where(reader.has("mesh") ? "mesh" : "shape");
 
+  if (reader.number("mesh_size", body.mesh_size) && !is_filled(body.mesh))
+    reader.fail("mesh_size",
+                fmt::format("{} goes with a surface or an image only", reader.called("mesh_size")),
+                "remove it, or name a file .off .obj .stl .ply .inr .nii as mesh");
   reader.cells("cells", body.cells);
   reader.point("size", body.size);
   reader.number("jitter", body.jitter);

@@ -10,6 +10,7 @@
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/size.h"
 #include "sinew/mesh/subdivide.h"
+#include "sinew/scene/filled.h"
 #include "sinew/scene/keys.h"
 
 namespace sinew {
@@ -48,6 +49,8 @@ TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source
   const fs::path tetgen = path.string() + ".node";  // TetGen's pair goes by its stem
   if (!fs::exists(path, failed) && !fs::exists(tetgen, failed)) refuse_missing(body, path);
   source = shown(path).string();
+  // mesh_size is in metres, the file is not yet.
+  if (is_filled(path)) return read_filled(source, body.mesh_size / body.scale, body.mesh_where);
   return io::read_mesh(source);
 }
 

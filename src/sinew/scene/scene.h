@@ -60,6 +60,7 @@ struct SceneBody {
   std::string name;
   // Where the mesh comes from: a file or a shape.
   std::string mesh;                       // path, relative to the scene file; empty: a shape
+  double mesh_size = 0.0;                 // of surfaces and images: mean edge [m]; 0: sinew-mesh's
   std::string shape;                      // the word of the scene: beam, box ...
   std::array<int, 3> cells = {4, 4, 16};  // beam, box
   Vec3 size = Vec3(0.1, 0.1, 0.4);        // beam, box [m]

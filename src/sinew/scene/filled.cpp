@@ -1,0 +1,163 @@
+#include "sinew/scene/filled.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdlib>
+#include <system_error>
+#include <vector>
+
+#include "sinew/base/hash.h"
+#include "sinew/io/file_io.h"
+#include "sinew/io/image.h"
+#include "sinew/io/mesh_io.h"
+#include "sinew/io/surface_file.h"
+
+extern char** environ;
+
+namespace sinew {
+namespace fs = std::filesystem;
+namespace {
+
+constexpr std::size_t longest_message = 4096;
+// Part of the hash: to be raised when sinew-mesh makes other meshes of the same file.
+constexpr int mesher_version = 1;
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? std::string() : std::string(value);
+}
+
+fs::path cache_folder() {
+  if (const std::string xdg = environment("XDG_CACHE_HOME"); !xdg.empty()) {
+    return fs::path(xdg) / "sinew" / "meshes";
+  }
+  if (const std::string home = environment("HOME"); !home.empty()) {
+    return fs::path(home) / ".cache" / "sinew" / "meshes";
+  }
+  return fs::temp_directory_path() / "sinew-meshes";
+}
+
+std::string mesher() {
+  if (std::string named = environment("SINEW_MESH"); !named.empty()) return named;
+  std::error_code failed;
+  const fs::path beside = fs::read_symlink("/proc/self/exe", failed).parent_path() / "sinew-mesh";
+  if (!failed && fs::exists(beside, failed)) return beside.string();
+  return "sinew-mesh";
+}
+
+// Runs a program and waits. Returns its exit code, or what spawning it failed with as a negative
+// errno; `told` is what it wrote to standard error.
+int run(const std::vector<std::string>& command, std::string& told) {
+  std::array<int, 2> pipe_ends{};
+  if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) return -errno;
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+  posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], STDERR_FILENO);
+  std::vector<char*> words;
+  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  pid_t child = 0;
+  const int failure = posix_spawnp(&child, words[0], &actions, nullptr, words.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  close(pipe_ends[1]);
+  std::array<char, 512> buffer{};
+  ssize_t got = 0;
+  while (failure == 0 && ((got = read(pipe_ends[0], buffer.data(), buffer.size())) > 0 ||
+                          (got < 0 && errno == EINTR))) {
+    if (got > 0 && told.size() < longest_message) {
+      told.append(buffer.data(), static_cast<std::size_t>(got));
+    }
+  }
+  close(pipe_ends[0]);
+  if (failure != 0) return -failure;
+  int status = 0;
+  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+// sinew-mesh's own message without its name, in two: what is wrong, and the remedy.
+std::pair<std::string, std::string> split_message(std::string told) {
+  constexpr std::string_view prefix = "sinew-mesh: ";
+  constexpr std::string_view remedy = "\n  remedy: ";
+  if (told.starts_with(prefix)) told.erase(0, prefix.size());
+  while (!told.empty() && told.back() == '\n') told.pop_back();
+  const std::size_t at = told.find(remedy);
+  if (at == told.npos) return {told, "run sinew-mesh on the file to see more"};
+  return {told.substr(0, at), told.substr(at + remedy.size())};
+}
+
+void fill(const fs::path& path, const fs::path& out, double size, const Location& where) {
+  std::vector<std::string> command = {mesher(), path.string(), "-q", "--force", "-o", out.string()};
+  if (size > 0) {
+    command.insert(command.end(), {"--size", fmt::format("{}", size)});
+  }
+  std::string told;
+  const int code = run(command, told);
+  if (code == 0) return;
+  if (code < 0 || code == 127) {
+    throw Error(
+        ErrorKind::input,
+        fmt::format("{} has to be filled with tetrahedra first, and the program for it, {}, "
+                    "cannot be started: {}",
+                    path.string(), command[0],
+                    std::generic_category().message(code < 0 ? -code : ENOENT)),
+        "./dev mesh builds it (docs/mesher.md); put it beside sinew or on PATH, or name it in "
+        "SINEW_MESH",
+        where);
+  }
+  const auto [message, remedy] = split_message(std::move(told));
+  throw Error(ErrorKind::input,
+              message.empty()
+                  ? fmt::format("{}: sinew-mesh ended with code {}", path.string(), code)
+                  : message,
+              remedy, where);
+}
+
+}  // namespace
+
+bool is_filled(const fs::path& path) {
+  std::string ending = path.extension().string();
+  for (char& c : ending) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  const auto& surfaces = io::surface_endings();
+  return io::is_image_name(path) ||
+         std::find(surfaces.begin(), surfaces.end(), ending) != surfaces.end();
+}
+
+TetMesh read_filled(const fs::path& path, double size, const Location& where) {
+  Hash hash;
+  hash.value(mesher_version);
+  hash.text(path.extension().string());  // the format goes by it
+  hash.value(size);
+  hash.text(io::read_file(path));
+  const fs::path folder = cache_folder();
+  const fs::path kept = folder / (hex(hash.digest()) + ".vtu");
+  std::error_code failed;
+  if (!fs::exists(kept, failed)) {
+    fs::create_directories(folder, failed);
+    if (failed) {
+      throw Error(ErrorKind::io,
+                  fmt::format("cannot make the folder {} for filled meshes: {}", folder.string(),
+                              failed.message()),
+                  "name another in XDG_CACHE_HOME", where);
+    }
+    // Under a name of its own first: two runs may fill the same file at once.
+    const fs::path fresh = folder / fmt::format("{}.{}.vtu", hex(hash.digest()), getpid());
+    fill(path, fresh, size, where);
+    fs::rename(fresh, kept);
+  }
+  return io::read_mesh(kept);
+}
+
+}  // namespace sinew
