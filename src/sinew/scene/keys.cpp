@@ -84,7 +84,7 @@ KeyTables make_tables() {
             "[body.NAME]",
             {
                 text("mesh"),
-                number("mesh_size", "m", "a 20th of the longest side", positive),
+                number("mesh_size", "m", "", positive),
                 word("shape", "", "beam box sphere ellipsoid cylinder hollow_sphere"),
                 other("cells", T::cells, "", "[4, 4, 16]", from_to(1, 20'000'000)),
                 point("size", "m", "[0.1, 0.1, 0.4]", positive),
