@@ -108,6 +108,17 @@ void add_springs(Model& model, const Body& body, const BodySpec& spec) {
   }
 }
 
+std::string law_names(const std::vector<Material>& materials) {
+  std::vector<std::string> names;
+  for (const Material& m : materials) {
+    const std::string name = law_name(m.law);
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  }
+  return fmt::format("{}", fmt::join(names, "+"));
+}
+
+}  // namespace
+
 const char* law_name(Law law) {
   switch (law) {
     case Law::uniform:
@@ -123,17 +134,6 @@ const char* law_name(Law law) {
   }
   return "?";
 }
-
-std::string law_names(const std::vector<Material>& materials) {
-  std::vector<std::string> names;
-  for (const Material& m : materials) {
-    const std::string name = law_name(m.law);
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  }
-  return fmt::format("{}", fmt::join(names, "+"));
-}
-
-}  // namespace
 
 void add_body(Model& model, const BodySpec& spec) {
   if (model.first_attachment != model.spring_count() ||

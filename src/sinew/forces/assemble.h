@@ -15,6 +15,9 @@
 
 namespace sinew {
 
+// "lloyd", "neo-hookean": the word of scenes.
+const char* law_name(Law law);
+
 struct BodySpec {
   std::string name;
   TetMesh mesh;                      // sound (mesh/doctor.h) and placed in the world, [m]

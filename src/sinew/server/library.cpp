@@ -44,7 +44,8 @@ bool is_plain(const std::string& name) {
 
 // A folder that only this user can look into.
 fs::path make_folder() {
-  std::string path = (fs::temp_directory_path() / "sinew-view-XXXXXX").string();
+  // mkdtemp() puts letters of its own in the place of six of these.
+  std::string path = (fs::temp_directory_path() / "sinew-view-").string() + std::string(6, 'X');
   if (::mkdtemp(path.data()) == nullptr) {
     throw Error(ErrorKind::io, "cannot make a folder for files", "set TMPDIR to one that is yours",
                 Location{path});

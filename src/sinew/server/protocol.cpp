@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "sinew/base/error.h"
+#include "sinew/forces/assemble.h"
 #include "sinew/scene/laws.h"
 
 namespace sinew::server {
@@ -188,22 +189,6 @@ Json sphere(const live::SphereStatus& s) {
           {"radius", s.radius},
           {"force", vector(s.force)},
           {"contacts", s.contacts}};
-}
-
-const char* law_name(Law law) {
-  switch (law) {
-    case Law::uniform:
-      return "uniform";
-    case Law::lloyd:
-      return "lloyd";
-    case Law::vangelder:
-      return "vangelder";
-    case Law::neo_hookean:
-      return "neo-hookean";
-    case Law::calibrated:
-      return "calibrated";
-  }
-  return "";
 }
 
 std::string dump(const Json& json) {
