@@ -67,6 +67,13 @@ std::uint64_t Model::hash() const {
     h.value(ground->restitution);
     h.value(ground->friction);
   }
+  h.value(touch.has_value());
+  if (touch) {
+    h.value(touch->bodies);
+    h.value(touch->self);
+    h.value(touch->friction);
+    h.value(touch->restitution);
+  }
   for (const Body& b : bodies) {
     h.text(b.name);
     h.value(b.nodes.end);

@@ -63,6 +63,14 @@ struct Obstacle {
   Path path = {};              // moves the centre
 };
 
+// Bodies that may not enter each other, or themselves (contact/). docs/methods/contact.md.
+struct Touch {
+  bool bodies = true;        // bodies against bodies
+  bool self = false;         // every body against itself
+  double friction = 0.5;     // [-] Coulomb's mu >= 0
+  double restitution = 0.0;  // [-] in [0, 1], of explicit steps
+};
+
 // Springs of rest length zero from nodes to points that are moved from outside during a run
 // (forces/tethers.h). No scene has them: the hands of the live view are made of them.
 struct Tether {
@@ -148,6 +156,7 @@ struct Model {
 
   Vec3 gravity = Vec3(0.0, -9.81, 0.0);  // [m/s2]
   std::optional<Ground> ground;
+  std::optional<Touch> touch;
   std::vector<Body> bodies;
   std::vector<Pin> pins;
   std::vector<Load> loads;

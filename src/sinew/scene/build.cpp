@@ -328,6 +328,8 @@ Model build_model(const Scene& scene, BuildReport* report) {
   model.limit_tolerance = scene.limit_tolerance;
   if (const auto& g = scene.ground)
     model.ground = Ground{g->point, g->normal, g->restitution, g->friction};
+  if (const auto& c = scene.contact)
+    model.touch = Touch{c->bodies, c->self, c->friction, c->restitution};
   Parts(scene, bodies, model).add();
   finish(model);
   return model;

@@ -78,6 +78,7 @@ KeyTables make_tables() {
                  other("probe", T::table),
                  other("obstacle", T::table),
                  other("ground", T::table),
+                 other("contact", T::table),
                  other("output", T::table),
              }};
   t.body = {"body",
@@ -208,6 +209,14 @@ KeyTables make_tables() {
                   number("restitution", "", "0", from_to(0, 1)),
                   number("friction", "", "0.5", not_negative),
               }};
+  t.contact = {"contact",
+               "[contact]",
+               {
+                   boolean("bodies", "true"),
+                   boolean("self", "false"),
+                   number("friction", "", "0.5", not_negative),
+                   number("restitution", "", "0", from_to(0, 1)),
+               }};
   t.output = {"output",
               "[output]",
               {
@@ -247,7 +256,7 @@ const Key* KeyTable::find(std::string_view key) const {
 
 std::vector<const KeyTable*> KeyTables::all() const {
   return {&scene,      &body, &material,   &region, &motion, &key_frame, &select, &box,   &sphere,
-          &half_space, &pin,  &attachment, &force,  &probe,  &obstacle,  &ground, &output};
+          &half_space, &pin,  &attachment, &force,  &probe,  &obstacle,  &ground, &contact, &output};
 }
 
 const KeyTables& key_tables() {

@@ -116,6 +116,7 @@ Scene parse_root(const DocValue& document) {
   parse_named(root, "obstacle", scene.obstacles, parse_obstacle);
   refuse_shared_columns(scene, root);
   if (const DocValue* ground = root.table("ground")) scene.ground = parse_ground(*ground);
+  if (const DocValue* contact = root.table("contact")) scene.contact = parse_contact(*contact);
   if (const DocValue* output = root.table("output")) scene.output = parse_output(*output);
   if (scene.duration * scene.output.fps > kMaxFrames)
     root.fail("duration",

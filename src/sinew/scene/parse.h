@@ -20,6 +20,7 @@ SceneForce parse_force(const std::string& name, const DocValue& value, const Bod
 SceneProbe parse_probe(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneObstacle parse_obstacle(const std::string& name, const DocValue& value);
 SceneGround parse_ground(const DocValue& value);
+SceneContact parse_contact(const DocValue& value);
 SceneOutput parse_output(const DocValue& value);
 
 // Throws where the table lacks a key that it cannot do without.

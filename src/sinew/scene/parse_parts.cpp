@@ -135,6 +135,16 @@ SceneGround parse_ground(const DocValue& value) {
   return ground;
 }
 
+SceneContact parse_contact(const DocValue& value) {
+  const Reader reader(value, "[contact]", {&key_tables().contact});
+  SceneContact contact;
+  reader.boolean("bodies", contact.bodies);
+  reader.boolean("self", contact.self);
+  reader.number("friction", contact.friction);
+  reader.number("restitution", contact.restitution);
+  return contact;
+}
+
 SceneOutput parse_output(const DocValue& value) {
   const Reader reader(value, "[output]", {&key_tables().output});
   SceneOutput output;

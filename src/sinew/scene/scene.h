@@ -142,6 +142,13 @@ struct SceneGround {
   double friction = 0.5;
 };
 
+struct SceneContact {
+  bool bodies = true;  // bodies against bodies
+  bool self = false;   // every body against itself
+  double friction = 0.5;
+  double restitution = 0.0;
+};
+
 struct SceneOutput {
   double fps = 30.0;              // frames per simulated second
   bool vtu = true;                // write the VTU series
@@ -167,6 +174,7 @@ struct Scene {
   int limit_sweeps = 20;
   double limit_tolerance = 1e-3;
   std::optional<SceneGround> ground;
+  std::optional<SceneContact> contact;
   SceneOutput output;
   std::vector<SceneBody> bodies;  // in the file's order
   std::vector<ScenePin> pins;

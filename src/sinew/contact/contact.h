@@ -1,0 +1,51 @@
+// What touches: a condition on the distance between a node or edge and what it may not enter.
+// Found by contact/surfaces.h and contact/colliders.h; answered by contact/respond.h in explicit
+// steps, by solver/constraints.h in implicit ones and rest states. docs/methods/contact.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "sinew/base/vec.h"
+
+namespace sinew {
+
+// A condition on one to four nodes. The place that touches, seen from what it touches, is
+//
+//   r(x) = sum_a weight_a x_a - anchor,      gap(x) = normal . r(x) >= 0
+//
+//   node against a triangle:  weights 1, -b0, -b1, -b2       anchor 0
+//   edge against an edge:     weights 1-s, s, -(1-t), -t     anchor 0
+//   node against a collider:  weight 1                       anchor on the collider's surface
+//
+// Weights that sum to zero and a common normal keep momentum to rounding.
+struct Contact {
+  std::array<Index, 4> node = {-1, -1, -1, -1};  // node ids, those used first
+  std::array<double, 4> weight = {};             // [-]
+  int count = 0;                                 // nodes used, 1 to 4
+  Vec3 normal = Vec3::UnitY();  // [-] unit, out of what is touched (triangle, second edge, collider)
+  Vec3 anchor = Vec3::Zero();   // [m] of the collider, at the end of the step
+  Vec3 way = Vec3::Zero();      // [m] of the collider's surface there over the step
+  double gap = 0.0;             // [m] at the end of the step: < 0 inside
+  double moment = 1.0;          // [-] in [0, 1]: when within the step the gap became 0; 0 where it
+                                // was 0 or less from the start
+  double friction = 0.0;        // [-] Coulomb's mu
+  double restitution = 0.0;     // [-]
+  Index obstacle = -1;          // the collider, index into Model::obstacles; -1: none
+  std::uint64_t key = 0;        // of the pair: the same from step to step; they are sorted by it
+};
+
+// Where the contact's place is, seen from what it touches [m].
+inline Vec3 contact_offset(const Contact& c, const std::vector<Vec3>& x) {
+  Vec3 r = -c.anchor;
+  for (int a = 0; a < c.count; ++a)
+    r += c.weight[static_cast<std::size_t>(a)] * x[uz(c.node[static_cast<std::size_t>(a)])];
+  return r;
+}
+
+inline double contact_gap(const Contact& c, const std::vector<Vec3>& x) {
+  return c.normal.dot(contact_offset(c, x));
+}
+
+}  // namespace sinew
