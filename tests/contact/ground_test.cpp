@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "sinew/contact/respond.h"
 #include "sinew/forces/assemble.h"
 #include "sinew/forces/workspace.h"
 
@@ -29,7 +30,9 @@ struct Ball {
     const std::vector<Vec3> force = {2.0 * Vec3(0, -g, 0)};
     state.half_velocity[0] += 0.5 * (state.last_step + h) * Vec3(0, -g, 0);
     state.position[0] += h * state.half_velocity[0];
-    const GroundReport r = respond_to_ground(model, force, h, state);
+    std::vector<Contact> found;
+    find_ground_contacts(model, state.position, found);
+    const ContactReport r = respond_to_contacts(model, found, force, h, state);
     contacts += r.contacts;
     dissipated += r.dissipated;
     state.last_step = h;

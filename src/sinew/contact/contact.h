@@ -24,16 +24,17 @@ struct Contact {
   std::array<Index, 4> node = {-1, -1, -1, -1};  // node ids, those used first
   std::array<double, 4> weight = {};             // [-]
   int count = 0;                                 // nodes used, 1 to 4
-  Vec3 normal = Vec3::UnitY();  // [-] unit, out of what is touched (triangle, second edge, collider)
-  Vec3 anchor = Vec3::Zero();   // [m] of the collider, at the end of the step
-  Vec3 way = Vec3::Zero();      // [m] of the collider's surface there over the step
-  double gap = 0.0;             // [m] at the end of the step: < 0 inside
-  double moment = 1.0;          // [-] in [0, 1]: when within the step the gap became 0; 0 where it
-                                // was 0 or less from the start
-  double friction = 0.0;        // [-] Coulomb's mu
-  double restitution = 0.0;     // [-]
-  Index obstacle = -1;          // the collider, index into Model::obstacles; -1: none
-  std::uint64_t key = 0;        // of the pair: the same from step to step; they are sorted by it
+  Vec3 normal =
+      Vec3::UnitY();           // [-] unit, out of what is touched (triangle, second edge, collider)
+  Vec3 anchor = Vec3::Zero();  // [m] of the collider, at the end of the step
+  Vec3 way = Vec3::Zero();     // [m] of the collider's surface there over the step
+  double gap = 0.0;            // [m] at the end of the step: < 0 inside
+  double moment = 1.0;         // [-] in [0, 1]: when within the step the gap became 0; 0 where it
+                               // was 0 or less from the start
+  double friction = 0.0;       // [-] Coulomb's mu
+  double restitution = 0.0;    // [-]
+  Index obstacle = -1;         // the collider, index into Model::obstacles; -1: none
+  std::uint64_t key = 0;       // of the pair: the same from step to step; they are sorted by it
 };
 
 // Where the contact's place is, seen from what it touches [m].

@@ -32,6 +32,8 @@ struct State {
   std::int64_t step = 0;   // steps taken
   EnergyAccount energy;
   Reactions reactions;
+  // What bodies push the hard obstacles with, mean over the last step [N] (obstacles).
+  std::vector<Vec3> obstacle_force;
 
   // Positions, velocities, time and step: equal runs have equal hashes at any thread count.
   std::uint64_t hash() const;

@@ -290,7 +290,7 @@ void Stepping::verlet_steps(RunState& run, const std::atomic<bool>* stop) {
     --run.steps_left;
     --run.steps_to_watch;
     if (model_.has_volume && run.steps_left > 0) watch_guard(run);
-    run.contacts = report.contacts;
+    run.contacts = report.contact.contacts;
     run.limit_sweeps += report.limit_sweeps;
     run.righting_steps += report.righted > 0 ? 1 : 0;
     run.unmet_limits += report.limits_met && report.volume_met ? 0 : 1;

@@ -8,6 +8,7 @@
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/contact/ground.h"
+#include "sinew/contact/respond.h"
 #include "sinew/forces/limits.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/node_kernels.h"
@@ -100,6 +101,17 @@ void follow_positions(const Model& model, const Workspace& workspace,
   });
 }
 
+// Contacts of the move, and the answer to them.
+void respond(const Model& model, Workspace& workspace, double h, State& state,
+             VerletReport& report) {
+  std::vector<Contact> contacts;
+  state.obstacle_force.assign(model.obstacles.size(), Vec3::Zero());
+  if (model.ground) find_ground_contacts(model, state.position, contacts);
+  report.contact = respond_to_contacts(model, contacts, workspace.force, h, state);
+  state.energy.dissipated += report.contact.dissipated;
+  state.energy.work_in += report.contact.work_in;
+}
+
 // Projects the limits, with the ground as a constraint among them; velocities follow.
 void enforce_limits(const Model& model, const Workspace& workspace, double h, State& state,
                     VerletReport& report) {
@@ -178,11 +190,7 @@ VerletReport verlet_step(const Model& model, double h, State& state, Workspace& 
   const Index broken = move_free_nodes(model, workspace, h, state);
   move_pins(model, workspace, h, state);
   if (broken == none) {
-    if (model.ground) {
-      const GroundReport ground = respond_to_ground(model, workspace.force, h, state);
-      report.contacts = ground.contacts;
-      state.energy.dissipated += ground.dissipated;
-    }
+    respond(model, workspace, h, state, report);
     if (!model.limited.empty()) enforce_limits(model, workspace, h, state, report);
     if (model.has_volume_limit) enforce_volume(model, h, workspace, state, report);
   }

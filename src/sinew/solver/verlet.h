@@ -1,13 +1,14 @@
 // Position Verlet: one explicit step. docs/methods/verlet.md.
 #pragma once
 
+#include "sinew/contact/respond.h"
 #include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
 
 struct VerletReport {
-  Index contacts = 0;      // nodes that touched the ground
+  ContactReport contact;
   int limit_sweeps = 0;    // sweeps that moved a spring
   bool limits_met = true;  // false: springs still over their limit after the last sweep
   bool volume_met = true;  // false: cells still over their volume limit after the projections
