@@ -11,12 +11,17 @@
 namespace sinew {
 
 class PackedForces;
+class ContactFinder;
 
 struct Workspace {
   explicit Workspace(const Model& model);
 
   // Where it is set, compute_forces() takes tets and springs from it, in single precision.
   std::shared_ptr<PackedForces> packed;
+
+  // Of contacts, made by the stepper that first looks for them (contact/find.h).
+  std::shared_ptr<ContactFinder> contacts;
+  std::vector<Vec3> before;  // positions before the move, where contacts are looked for [m] (nodes)
 
   std::vector<Vec3> spring_force;     // on end 0 of each spring [N] (springs)
   std::vector<Vec3> force;            // total on each node [N] (nodes)

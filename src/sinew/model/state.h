@@ -17,10 +17,18 @@ struct EnergyAccount {
 
 // What the ground and the limits push with at the end of the last implicit step, where the next one
 // starts from; empty before the first, and with Verlet (solver/constraints.h).
+struct ContactPush {
+  std::uint64_t key = 0;     // of the contact (contact/contact.h)
+  Index node = -1;           // the first of its nodes
+  Index obstacle = -1;       // -1: between bodies
+  Vec3 push = Vec3::Zero();  // on the place [N]
+};
+
 struct Reactions {
   std::vector<Vec3> ground;      // of the ground on each node [N] (nodes of bodies)
   std::vector<double> tension;   // of each limited spring [N] (as Model::limited), < 0: it pushes
   std::vector<double> pressure;  // on the volume of each limited cell [Pa] (cells), > 0: inwards
+  std::vector<ContactPush> contacts;  // those that push, by key
 };
 
 struct State {

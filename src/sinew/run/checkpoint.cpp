@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view magic = "SINEWCP4";
+constexpr std::string_view magic = "SINEWCP5";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>
@@ -31,6 +31,8 @@ void visit(Archive& a, Run& r) {
   a.array(r.state.reactions.ground);
   a.array(r.state.reactions.tension);
   a.array(r.state.reactions.pressure);
+  a.array(r.state.reactions.contacts);
+  a.array(r.state.obstacle_force);
   a.value(r.frame);
   a.value(r.steps_left);
   a.value(r.steps_to_watch);
@@ -47,6 +49,8 @@ void visit(Archive& a, Run& r) {
   a.value(r.unmet_limits);
   a.value(r.righting_steps);
   a.value(r.contacts);
+  a.value(r.deepest);
+  a.value(r.friction_work);
   a.value(r.newton_steps);
   a.value(r.products);
   a.value(r.residual);

@@ -269,6 +269,8 @@ void Stepping::implicit_steps(RunState& run, const std::atomic<bool>* stop) {
     run.residual = std::max(run.residual, report.residual);
     run.step_cuts += report.cuts;
     run.contacts = report.contacts;
+    run.deepest = std::max(run.deepest, report.deepest);
+    run.friction_work += report.friction;
     run.unmet_limits += report.within ? 0 : 1;
     run.righting_steps += report.righted;
     ++run.work.steps;
@@ -291,6 +293,8 @@ void Stepping::verlet_steps(RunState& run, const std::atomic<bool>* stop) {
     --run.steps_to_watch;
     if (model_.has_volume && run.steps_left > 0) watch_guard(run);
     run.contacts = report.contact.contacts;
+    run.deepest = std::max(run.deepest, report.contact.deepest);
+    run.friction_work += report.contact.friction;
     run.limit_sweeps += report.limit_sweeps;
     run.righting_steps += report.righted > 0 ? 1 : 0;
     run.unmet_limits += report.limits_met && report.volume_met ? 0 : 1;

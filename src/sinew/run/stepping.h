@@ -49,7 +49,9 @@ struct RunState {
   std::int64_t limit_sweeps = 0;      // sweeps over limited springs in all
   std::int64_t unmet_limits = 0;      // steps that ended with a limit violated
   std::int64_t righting_steps = 0;    // steps in which a tangled body was led back
-  std::int64_t contacts = 0;          // nodes on the ground in the last step
+  std::int64_t contacts = 0;          // places that touched in the last step
+  double deepest = 0.0;               // a place was left inside what it touched, of all steps [m]
+  double friction_work = 0.0;         // of contacts, over the run [J]
   std::int64_t newton_steps = 0;      // of rest states and implicit steps, in all
   std::int64_t products = 0;          // Hessian products it took, in all
   double residual = 0.0;       // of the last rest state, or the largest of the implicit steps [-]

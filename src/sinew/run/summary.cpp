@@ -126,6 +126,8 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.peak_stretch = run.peak_stretch;
   s.peak_compress = run.peak_compress;
   s.contacts = run.contacts;
+  s.deepest_penetration = run.deepest;
+  s.friction_work = run.friction_work;
   s.limit_sweeps = run.limit_sweeps;
   s.unmet_limits = run.unmet_limits;
   s.righting_steps = run.righting_steps;
@@ -216,6 +218,8 @@ nlohmann::ordered_json to_json(const Summary& s) {
           {"peak_stretch", s.peak_stretch},
           {"peak_compress", s.peak_compress},
           {"contacts", s.contacts},
+          {"deepest_penetration", s.deepest_penetration},
+          {"friction_work", s.friction_work},
           {"limits",
            {{"sweeps", s.limit_sweeps},
             {"unmet_steps", s.unmet_limits},

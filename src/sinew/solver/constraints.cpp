@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/network.h"
 #include "sinew/forces/volume.h"
 #include "sinew/solver/bound.h"
+#include "sinew/solver/mean_edge.h"
 
 namespace sinew {
 namespace {
@@ -115,16 +115,10 @@ double parallel_max(std::size_t n, const F& f) {
 
 }  // namespace
 
-double mean_edge(const Model& model) {
-  const auto mean = [](const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  };
-  if (!model.tets.empty()) return std::cbrt(6.0 * std::sqrt(2.0) * mean(model.rest_volume));
-  return model.springs.empty() ? 0.0 : mean(model.rest_length);
-}
-
 Constraints::Constraints(const Model& model, double inertia, double rate, bool friction)
-    : model_(model), friction_(friction && model.ground && model.ground->friction > 0.0) {
+    : model_(model),
+      friction_(friction && model.ground && model.ground->friction > 0.0),
+      touching_(model, node_compliance(model, inertia, rate), ratio, friction) {
   if (!model.ground && model.limited.empty() && !model.has_volume_limit) return;
   const std::vector<double> compliance = node_compliance(model, inertia, rate);
   if (model.ground) {
@@ -150,10 +144,12 @@ Constraints::Constraints(const Model& model, double inertia, double rate, bool f
 }
 
 bool Constraints::empty() const {
-  return ground_stiffness_.empty() && spring_stiffness_.empty() && cell_stiffness_.empty();
+  return ground_stiffness_.empty() && spring_stiffness_.empty() && cell_stiffness_.empty() &&
+         touching_.empty();
 }
 
-void Constraints::start(const State& state, const std::vector<Vec3>* from) {
+void Constraints::start(const State& state, const std::vector<Vec3>* from, double step) {
+  touching_.start(state, from, step);
   from_ = from;
   hardness_ = 1.0;
   now_ = state.reactions;
@@ -236,6 +232,7 @@ double Constraints::value(const std::vector<Vec3>& x, const Workspace& workspace
     return bound_energy(cell_volume(model_, workspace, c), range.low, range.high,
                         hardness_ * cell_stiffness_[c], now_.pressure[c]);
   });
+  energy += touching_.value(x);
   return energy;
 }
 
@@ -264,6 +261,7 @@ void Constraints::spread(const std::vector<Vec3>& x, const Ground& ground, const
 
 void Constraints::add_forces(const std::vector<Vec3>& x, Workspace& workspace,
                              std::vector<Vec3>& force) const {
+  touching_.add_forces(x, force);
   spread(
       x, [&](std::size_t i) { return ground_push(i, x[i]); },
       [&](std::size_t k, double length) { return spring_pull(k, length); },
@@ -273,6 +271,7 @@ void Constraints::add_forces(const std::vector<Vec3>& x, Workspace& workspace,
 
 void Constraints::add_reactions(const std::vector<Vec3>& x, Workspace& workspace,
                                 std::vector<Vec3>& force) const {
+  touching_.add_reactions(force);
   spread(
       x, [&](std::size_t i) { return now_.ground[i]; },
       [&](std::size_t k, double) { return now_.tension[k]; },
@@ -280,6 +279,7 @@ void Constraints::add_reactions(const std::vector<Vec3>& x, Workspace& workspace
 }
 
 void Constraints::linearise(const std::vector<Vec3>& x, Workspace& workspace) {
+  touching_.linearise(x);
   node_block_.assign(ground_stiffness_.size(), Mat3::Zero());
   parallel_for(static_cast<Index>(node_block_.size()), [&](Index i) {
     const auto node = uz(i);
@@ -318,6 +318,7 @@ void Constraints::linearise(const std::vector<Vec3>& x, Workspace& workspace) {
 
 void Constraints::add_stiffness_times(const std::vector<Vec3>& u, Workspace& workspace,
                                       std::vector<Vec3>& out) const {
+  touching_.add_stiffness_times(u, out);
   parallel_for(static_cast<Index>(node_block_.size()),
                [&](Index i) { out[uz(i)] += node_block_[uz(i)] * u[uz(i)]; });
   for_each_limited(model_, [&](std::size_t k) {
@@ -379,17 +380,21 @@ ConstraintError Constraints::update(const std::vector<Vec3>& x, const Workspace&
     if (change > 0.0) grips = sum > 0.0 ? change / (grip_tolerance * sum) : no_limit;
   }
   now_ = std::move(next);
-  return {std::max({ground, springs, cells}), grips};
+  const ContactConstraints::Change touching = touching_.update(x);
+  now_.contacts = touching_.pushes();
+  return {std::max({ground, springs, cells, touching.distance}), std::max(grips, touching.grip)};
 }
 
 Index Constraints::contacts() const {
   return static_cast<Index>(std::count_if(now_.ground.begin(), now_.ground.end(),
-                                          [](const Vec3& push) { return !push.isZero(0.0); }));
+                                          [](const Vec3& push) { return !push.isZero(0.0); }) +
+                            std::ssize(now_.contacts));
 }
 
 bool act(const Reactions& reactions) {
   const auto pulls = [](double s) { return s != 0.0; };
-  return std::any_of(reactions.ground.begin(), reactions.ground.end(),
+  return !reactions.contacts.empty() ||
+         std::any_of(reactions.ground.begin(), reactions.ground.end(),
                      [](const Vec3& push) { return !push.isZero(0.0); }) ||
          std::any_of(reactions.tension.begin(), reactions.tension.end(), pulls) ||
          std::any_of(reactions.pressure.begin(), reactions.pressure.end(), pulls);

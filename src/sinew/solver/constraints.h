@@ -6,6 +6,7 @@
 
 #include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
+#include "sinew/solver/contact_constraints.h"
 
 namespace sinew {
 
@@ -29,14 +30,14 @@ struct ConstraintError {
 // share of the error that is left by a pass, and keeps the tangent as well conditioned as it is.
 class Constraints {
  public:
-  // inertia [1/s2] and rate [1/s] as in Objective. friction: whether the ground has any.
+  // inertia [1/s2] and rate [1/s] as in Objective. friction: whether there is any.
   Constraints(const Model& model, double inertia, double rate, bool friction);
 
   bool empty() const;
 
-  // Takes the multipliers from where the state's last step left them. `from`: where slips along the
-  // ground start [m] (nodes); kept, and may be null without friction.
-  void start(const State& state, const std::vector<Vec3>* from);
+  // Takes the multipliers from where the state's last step left them. `from`: where the step of
+  // length `step` [s] and its slips start [m] (nodes); kept, and may be null without friction.
+  void start(const State& state, const std::vector<Vec3>* from, double step);
 
   // --- the energy for the multipliers as they are; workspace.tet_volume, tet_gradient are at x ---
 
@@ -72,10 +73,15 @@ class Constraints {
   // Makes the pushes at x the multipliers; returns how far they were off.
   ConstraintError update(const std::vector<Vec3>& x, const Workspace& workspace);
   // Multiplies every k; start() takes that back.
-  void harden(double factor) { hardness_ *= factor; }
+  void harden(double factor) {
+    hardness_ *= factor;
+    touching_.harden(factor);
+  }
 
-  Index contacts() const;  // nodes that the ground pushes
+  Index contacts() const;  // nodes that the ground pushes, and contacts that push
   const Reactions& reactions() const { return now_; }
+  ContactConstraints& touching() { return touching_; }
+  const ContactConstraints& touching() const { return touching_; }
 
  private:
   template <typename Ground, typename Spring, typename Cell>
@@ -100,10 +106,8 @@ class Constraints {
   std::vector<Mat3> node_block_;
   std::vector<SpringTangent> spring_tangent_;
   std::vector<double> cell_tangent_;
+  ContactConstraints touching_;
 };
-
-// Edge of the regular tet of the mean volume [m]; without tets the mean length of the springs.
-double mean_edge(const Model& model);
 
 // Whether anything pushes.
 bool act(const Reactions& reactions);

@@ -68,7 +68,7 @@ double work_of_the_outside(const Model& model, const Field& before, double since
 
 bool may_take_single(const Model& model, double tolerance) {
   return tolerance >= single_tolerance && !model.ground && model.limited.empty() &&
-         !model.has_volume_limit;
+         !model.has_volume_limit && !ContactFinder::anything_to_find(model);
 }
 
 ImplicitStepper::ImplicitStepper(const Model& model)
@@ -92,7 +92,7 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
     constraints_ = std::make_unique<Constraints>(model_, about, std::sqrt(about), true);
     constrained_inertia_ = about;
   }
-  constraints_->start(state, &from);
+  constraints_->start(state, &from, h);
   const Field lag = state.position;
   const Field inertial = blend(1.0, from, h, velocity);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
@@ -120,7 +120,7 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   report.products += newton.products;
   if (!newton.rests && !options.deadline) {  // a start that flew too far: from where it stands
     state.position = stand;
-    constraints_->start(state, &from);
+    constraints_->start(state, &from, h);
     newton = minimise_within(objective, linear_, newton_options, workspace_, state);
     report.newton += newton.newton;
     report.products += newton.products;
@@ -128,6 +128,9 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   report.residual = std::max(report.residual, newton.residual);
   report.ran_out = report.ran_out || newton.ran_out;
   report.contacts = constraints_->contacts();
+  report.deepest = constraints_->touching().deepest(state.position);
+  state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
+  constraints_->touching().add_obstacle_forces(state.obstacle_force);
   report.within = report.within && newton.within;
   state.reactions = constraints_->reactions();
   state.half_velocity = blend(1.0 / h, state.position, -1.0 / h, from);
@@ -175,6 +178,10 @@ bool ImplicitStepper::backward_euler(double h, const ImplicitOptions& options, S
   constraints_->add_reactions(state.position, workspace_, push);
   keep_free(model_, push);
   state.energy.dissipated -= 0.5 * h * (dot(push, v) + dot(push, state.half_velocity));
+  const double moved = constraints_->touching().work_of_obstacles();
+  state.energy.work_in += moved;
+  state.energy.dissipated += moved;
+  report.friction += constraints_->touching().work_of_friction(state.position);
   return true;
 }
 

@@ -23,7 +23,7 @@ struct ImplicitOptions {
 };
 
 // Whether steps to this tolerance may take forces in single precision: its digits are more than
-// enough, and the model has no ground and no limits.
+// enough, and the model has no ground, no contacts and no limits.
 bool may_take_single(const Model& model, double tolerance);
 
 struct ImplicitReport {
@@ -32,7 +32,9 @@ struct ImplicitReport {
   int cuts = 0;           // steps that were cut in half
   double residual = 0.0;  // the largest that was left [-]
   bool ran_out = false;   // of time, see ImplicitOptions::deadline
-  Index contacts = 0;     // nodes that the ground pushes at the end
+  Index contacts = 0;     // nodes that the ground pushes at the end, and contacts
+  double deepest = 0.0;   // place left inside another body or an obstacle [m]
+  double friction = 0.0;  // work of friction in contacts [J]
   int righted = 0;        // 1 where a tangled body was led back
   bool within = true;     // the ground and the limits hold to their tolerances
 };

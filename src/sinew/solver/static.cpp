@@ -217,7 +217,7 @@ int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Ve
 // spring from every node to where it starts does, sigma m / 2 |x - x_start|^2, which moves along
 // until it carries nothing (the proximal point method, Rockafellar 1976).
 NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& options, State& state) {
-  constraints_.start(state, nullptr);
+  constraints_.start(state, nullptr, 0.0);
   if (!constraints_.empty()) objective.constraints = &constraints_;
   objective.inertia = nudge_;
   const Field outer = outer_forces(model_, state);
@@ -228,7 +228,7 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
     if (nudge_ > 0.0) objective.inertial = &start;
     const NewtonReport once = minimise_within(objective, linear_, options, workspace_, state);
     state.reactions = constraints_.reactions();
-    constraints_.start(state, nullptr);
+    constraints_.start(state, nullptr, 0.0);
     const int newton = report.newton + once.newton;
     const int products = report.products + once.products;
     report = once;

@@ -364,6 +364,27 @@ void TangentMatrix::assemble_cells(const Objective& objective, const Workspace& 
   });
 }
 
+void TangentMatrix::assemble_contacts(const Objective& objective) {
+  contacts_.clear();
+  contact_block_.clear();
+  if (objective.constraints == nullptr) return;
+  for (const auto& tangent : objective.constraints->touching().tangents()) {
+    Touching touching;
+    touching.block = Block3(tangent.block);
+    if (contact_block_.empty()) contact_block_.assign(free_.size(), Mat3::Zero());
+    for (std::size_t a = 0; a < static_cast<std::size_t>(tangent.contact->count); ++a) {
+      const Index node = tangent.contact->node[a];
+      const double weight = tangent.contact->weight[a];
+      if (free_[uz(node)] == 0) continue;
+      touching.node[static_cast<std::size_t>(touching.count)] = node;
+      touching.weight[static_cast<std::size_t>(touching.count)] = static_cast<float>(weight);
+      ++touching.count;
+      contact_block_[uz(node)] += weight * weight * tangent.block;
+    }
+    contacts_.push_back(touching);
+  }
+}
+
 // D, and the inverse of the diagonal.
 void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
                                    const Workspace& workspace) {
@@ -381,6 +402,7 @@ void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
       own += objective.constraints->node_blocks()[n];
     }
     own_block_[n] = Block3(own);
+    if (!contact_block_.empty()) own += contact_block_[n];
     own.diagonal().array() += static_cast<double>(far_sum_[n]);
     Block3 sum(own);
     for (auto e = uz(near_start_[n]); e < uz(near_start_[n + 1]); ++e) {
@@ -401,6 +423,7 @@ void TangentMatrix::assemble(const Objective& objective, const Field& x,
                              const Workspace& workspace) {
   if (objective.model.has_volume) assemble_cells(objective, workspace);
   assemble_edges(objective, x, workspace);
+  assemble_contacts(objective);
   assemble_nodes(objective, x, workspace);
 }
 
@@ -426,10 +449,22 @@ double TangentMatrix::times(const Field4& u, Field4& out) const {
   const TangentRows m = rows();
   parallel_blocks(static_cast<Index>(cell_stiffness_.size()),
                   [&](Index, Range r) { tangent_cells(m, u.data(), r, cell_push_.data()); });
-  return parallel_reduce(
+  double sum = parallel_reduce(
       model_.node_count(), 0.0,
       [&](Range r) { return tangent_nodes(m, u.data(), cell_push_.data(), r, out.data()); },
       [](double a, double b) { return a + b; });
+  for (const Touching& t : contacts_) {
+    Float4 place;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(t.count); ++a) {
+      place += t.weight[a] * u[uz(t.node[a])];
+    }
+    const Float4 push = t.block * place;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(t.count); ++a) {
+      out[uz(t.node[a])] += t.weight[a] * push;
+    }
+    sum += static_cast<double>(place.dot(push));
+  }
+  return sum;
 }
 
 }  // namespace sinew

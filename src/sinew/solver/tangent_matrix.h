@@ -16,11 +16,12 @@ namespace sinew {
 // K u, node by node, in the parts that the model's terms make it of:
 //
 //   (K u)_i = D_i u_i + sum_j B_ij (u_i - u_j) + sum_j k_ij (u_i - u_j)
-//             + sum_c G_ci (kappa_c / V_c) sum_j G_cj . u_j
+//             + sum_c G_ci (kappa_c / V_c) sum_j G_cj . u_j + sum_p w_pi T_p sum_j w_pj u_j
 //
 // D: inertia, drag, obstacles. B: springs, dashpots, network and what a tet does between the nodes
 // of its edges. k: the network between nodes that share no edge. G_c: the gradient of a cell's
-// volume. Differences of u, so that moving all nodes alike feels none of the rounding of B.
+// volume. T_p, w_p: block and weights of a contact. Differences of u, so that moving all nodes
+// alike feels none of the rounding of B.
 //
 // In single precision: a Newton direction needs few digits, and half the bytes are half the time.
 // The force that Newton's method brings to zero is in double precision.
@@ -69,6 +70,7 @@ class TangentMatrix {
   Mat3 rare_block(const Objective& objective, const Field& x, const Workspace& workspace,
                   std::size_t edge) const;
   void assemble_cells(const Objective& objective, const Workspace& workspace);
+  void assemble_contacts(const Objective& objective);
   void assemble_nodes(const Objective& objective, const Field& x, const Workspace& workspace);
 
   const Model& model_;
@@ -101,6 +103,16 @@ class TangentMatrix {
   std::vector<float> far_sum_;            // their sum [N/m] (nodes)
   std::vector<Block3> own_block_;         // D_i [N/m] (nodes)
   std::vector<Block3> inverse_diagonal_;  // [m/N] (nodes)
+
+  // Contacts: sum_ab weight_a weight_b block between their nodes.
+  struct Touching {
+    int count = 0;
+    std::array<Index, 4> node = {};  // that move
+    std::array<float, 4> weight = {};
+    Block3 block;  // [N/m]
+  };
+  std::vector<Touching> contacts_;
+  std::vector<Mat3> contact_block_;  // what they add to the diagonal [N/m] (nodes); empty: nothing
 
   // Cells.
   std::vector<Index> cell_start_, cell_node_;  // nodes of its tets (cells + 1)

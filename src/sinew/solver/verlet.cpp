@@ -7,6 +7,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
+#include "sinew/contact/find.h"
 #include "sinew/contact/ground.h"
 #include "sinew/contact/respond.h"
 #include "sinew/forces/limits.h"
@@ -107,6 +108,10 @@ void respond(const Model& model, Workspace& workspace, double h, State& state,
   std::vector<Contact> contacts;
   state.obstacle_force.assign(model.obstacles.size(), Vec3::Zero());
   if (model.ground) find_ground_contacts(model, state.position, contacts);
+  if (workspace.contacts) {
+    workspace.contacts->find(workspace.before, state.position, state.time, state.time + h, 0.0,
+                             contacts);
+  }
   report.contact = respond_to_contacts(model, contacts, workspace.force, h, state);
   state.energy.dissipated += report.contact.dissipated;
   state.energy.work_in += report.contact.work_in;
@@ -184,6 +189,10 @@ VerletReport verlet_step(const Model& model, double h, State& state, Workspace& 
   if (report.righted > 0) {
     energy = measure_energies(model, state, workspace).total();
     right_tangled_bodies(model, state, h, workspace);
+  }
+  if (ContactFinder::anything_to_find(model)) {
+    if (!workspace.contacts) workspace.contacts = std::make_shared<ContactFinder>(model);
+    workspace.before = state.position;
   }
   add_work_of_loads(model, workspace, h, state);
   add_work_of_obstacles(model, h, state);

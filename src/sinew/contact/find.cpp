@@ -1,0 +1,32 @@
+#include "sinew/contact/find.h"
+
+#include <algorithm>
+
+#include "sinew/contact/colliders.h"
+#include "sinew/contact/surfaces.h"
+
+namespace sinew {
+
+ContactFinder::ContactFinder(const Model& model) : model_(model) {
+  if (!model.surface.triangles.empty()) surfaces_ = std::make_unique<SurfaceContacts>(model);
+}
+
+ContactFinder::~ContactFinder() = default;
+
+bool ContactFinder::anything_to_find(const Model& model) {
+  return !model.surface.triangles.empty() ||
+         std::any_of(model.obstacles.begin(), model.obstacles.end(),
+                     [](const Obstacle& o) { return o.stiffness == 0.0; });
+}
+
+void ContactFinder::find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0,
+                         double t1, double reach, std::vector<Contact>& contacts) {
+  std::vector<Contact> part;
+  if (surfaces_) surfaces_->find(from, to, reach, contacts);
+  find_collider_contacts(model_, from, to, t0, t1, reach, part);
+  contacts.insert(contacts.end(), part.begin(), part.end());
+  std::sort(contacts.begin(), contacts.end(),
+            [](const Contact& a, const Contact& b) { return a.key < b.key; });
+}
+
+}  // namespace sinew

@@ -1,0 +1,34 @@
+// All contacts of a step: of bodies with each other and with themselves, and with hard obstacles.
+// docs/methods/contact.md.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sinew/contact/contact.h"
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+class SurfaceContacts;
+
+class ContactFinder {
+ public:
+  explicit ContactFinder(const Model& model);
+  ~ContactFinder();
+
+  // Whether the model has anything but the ground that can touch.
+  static bool anything_to_find(const Model& model);
+
+  // Contacts of a step from positions `from` at time t0 to `to` at time t1 (nodes): places whose
+  // gap at `to` is below `reach` [m], and those that met on the way. Appends them sorted by key;
+  // they depend on nothing but the model and the arguments.
+  void find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0, double t1,
+            double reach, std::vector<Contact>& contacts);
+
+ private:
+  const Model& model_;
+  std::unique_ptr<SurfaceContacts> surfaces_;
+};
+
+}  // namespace sinew

@@ -1,0 +1,257 @@
+#include "sinew/solver/contact_constraints.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/solver/bound.h"
+#include "sinew/solver/mean_edge.h"
+
+namespace sinew {
+namespace {
+
+// Depth that is good enough, and gap below which contacts are looked at before they touch, as
+// shares of the mean edge.
+constexpr double depth_tolerance = 1e-4;
+constexpr double reach_share = 0.05;
+// Friction goes by normal forces that are right to this share.
+constexpr double grip_tolerance = 2e-3;
+
+template <typename F>
+void for_each_node(const Contact& c, const F& f) {
+  for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) f(uz(c.node[a]), c.weight[a]);
+}
+
+}  // namespace
+
+ContactConstraints::ContactConstraints(const Model& model, const std::vector<double>& compliance,
+                                       double ratio, bool friction)
+    : model_(model), ratio_(ratio), friction_(friction), compliance_(compliance) {
+  if (!ContactFinder::anything_to_find(model)) return;
+  const double edge = mean_edge(model);
+  tolerance_ = depth_tolerance * edge;
+  reach_ = reach_share * edge;
+  finder_ = std::make_unique<ContactFinder>(model);
+}
+
+void ContactConstraints::start(const State& state, const std::vector<Vec3>* from, double step) {
+  if (empty()) return;
+  hardness_ = 1.0;
+  from_ = from;
+  now_ = state.time;
+  before_ = state.time - step;
+  if (from == nullptr) here_ = state.position;
+  held_.clear();
+  for (const ContactPush& p : state.reactions.contacts) {
+    Held h;
+    h.contact.key = p.key;
+    h.contact.node[0] = p.node;
+    h.contact.obstacle = p.obstacle;
+    h.push = p.push;
+    held_.push_back(h);
+  }
+  find(state.position);
+}
+
+ContactConstraints::Held ContactConstraints::hold(const Contact& c) const {
+  Held h;
+  h.contact = c;
+  if (!friction_) h.contact.friction = 0.0;
+  double sum = 0.0;
+  for_each_node(c, [&](std::size_t i, double w) { sum += w * w * compliance_[i]; });
+  h.stiffness = sum > 0.0 ? ratio_ / sum : 0.0;
+  h.start = c.way - c.anchor;  // the anchor where the step starts
+  const std::vector<Vec3>& from = from_ != nullptr ? *from_ : here_;
+  for_each_node(c, [&](std::size_t i, double w) { h.start += w * from[i]; });
+  return h;
+}
+
+// Contacts at x; what they push with is that of the same pair before, or of the same node where it
+// has gone on to the next triangle.
+void ContactConstraints::find(const std::vector<Vec3>& x) {
+  found_.clear();
+  finder_->find(from_ != nullptr ? *from_ : here_, x, before_, now_, reach_, found_);
+  std::vector<Held> next;
+  std::vector<char> taken(held_.size(), 0);
+  const auto place = [](const Held& h) { return std::pair(h.contact.obstacle, h.contact.node[0]); };
+  std::vector<std::size_t> by_node(held_.size());
+  for (std::size_t k = 0; k < by_node.size(); ++k) by_node[k] = k;
+  std::sort(by_node.begin(), by_node.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(place(held_[a]), a) < std::pair(place(held_[b]), b);
+  });
+  for (const Contact& c : found_) {
+    next.push_back(hold(c));
+    const auto same =
+        std::lower_bound(held_.begin(), held_.end(), c.key,
+                         [](const Held& h, std::uint64_t k) { return h.contact.key < k; });
+    if (same == held_.end() || same->contact.key != c.key) continue;
+    taken[static_cast<std::size_t>(same - held_.begin())] = 1;
+    next.back().push = same->push;
+  }
+  for (Held& h : next) {
+    if (h.push.isZero(0.0)) {
+      const auto first =
+          std::lower_bound(by_node.begin(), by_node.end(), place(h),
+                           [&](std::size_t k, const auto& p) { return place(held_[k]) < p; });
+      for (auto k = first; k != by_node.end() && place(held_[*k]) == place(h); ++k) {
+        if (taken[*k] != 0) continue;
+        taken[*k] = 1;
+        h.push = held_[*k].push;
+        break;
+      }
+    }
+    const Vec3& n = h.contact.normal;
+    const double normal = std::max(0.0, n.dot(h.push));
+    h.push = h.push - n.dot(h.push) * n;  // across
+    h.grip = h.contact.friction * normal;
+    const double size = h.push.norm();
+    if (size > h.grip) h.push *= h.grip / size;
+    h.push += normal * n;
+  }
+  held_ = std::move(next);
+}
+
+// Way of the place across the normal since the start of the step [m].
+Vec3 ContactConstraints::slip(const Held& h, const std::vector<Vec3>& x) const {
+  const Vec3 way = contact_offset(h.contact, x) - h.start;
+  return way - h.contact.normal.dot(way) * h.contact.normal;
+}
+
+Vec3 ContactConstraints::push(const Held& h, const std::vector<Vec3>& x) const {
+  const double k = hardness_ * h.stiffness;
+  if (k == 0.0) return Vec3::Zero();
+  const Vec3& n = h.contact.normal;
+  const double normal = n.dot(h.push);
+  Vec3 out = -bound_pull(contact_gap(h.contact, x), 0.0, no_limit, k, -normal) * n;
+  if (h.grip > 0.0) out -= friction_pull(slip(h, x), h.grip, k, normal * n - h.push);
+  return out;
+}
+
+double ContactConstraints::value(const std::vector<Vec3>& x) const {
+  double energy = 0.0;
+  for (const Held& h : held_) {
+    const double k = hardness_ * h.stiffness;
+    if (k == 0.0) continue;
+    const Vec3& n = h.contact.normal;
+    const double normal = n.dot(h.push);
+    energy += bound_energy(contact_gap(h.contact, x), 0.0, no_limit, k, -normal);
+    if (h.grip > 0.0) energy += friction_energy(slip(h, x), h.grip, k, normal * n - h.push);
+  }
+  return energy;
+}
+
+void ContactConstraints::add_forces(const std::vector<Vec3>& x, std::vector<Vec3>& force) const {
+  for (const Held& h : held_) {
+    const Vec3 p = push(h, x);
+    for_each_node(h.contact, [&](std::size_t i, double w) { force[i] += w * p; });
+  }
+}
+
+void ContactConstraints::add_reactions(std::vector<Vec3>& force) const {
+  for (const Held& h : held_) {
+    for_each_node(h.contact, [&](std::size_t i, double w) { force[i] += w * h.push; });
+  }
+}
+
+void ContactConstraints::linearise(const std::vector<Vec3>& x) {
+  tangents_.clear();
+  for (const Held& h : held_) {
+    const double k = hardness_ * h.stiffness;
+    if (k == 0.0) continue;
+    const Vec3& n = h.contact.normal;
+    const double normal = n.dot(h.push);
+    const double along = bound_stiffness(contact_gap(h.contact, x), 0.0, no_limit, k, -normal);
+    Mat3 block = along * n * n.transpose();
+    if (h.grip > 0.0) {
+      block += friction_stiffness(slip(h, x), h.grip, k, normal * n - h.push, n);
+    }
+    if (!block.isZero(0.0)) tangents_.push_back({&h.contact, block});
+  }
+}
+
+void ContactConstraints::add_stiffness_times(const std::vector<Vec3>& u,
+                                             std::vector<Vec3>& out) const {
+  for (const Tangent& t : tangents_) {
+    Vec3 r = Vec3::Zero();
+    for_each_node(*t.contact, [&](std::size_t i, double w) { r += w * u[i]; });
+    const Vec3 f = t.block * r;
+    for_each_node(*t.contact, [&](std::size_t i, double w) {
+      if (model_.inverse_mass[i] > 0.0) out[i] += w * f;
+    });
+  }
+}
+
+ContactConstraints::Change ContactConstraints::update(const std::vector<Vec3>& x) {
+  Change change;
+  if (empty()) return change;
+  const auto error = [&](const Held& h, const Vec3& by) {
+    const double k = hardness_ * h.stiffness;
+    return k > 0.0 ? by.norm() / (k * tolerance_) : 0.0;
+  };
+  double grips = 0.0;
+  double grip_change = 0.0;
+  for (Held& h : held_) {
+    const Vec3 p = push(h, x);
+    change.distance = std::max(change.distance, error(h, p - h.push));
+    h.push = p;
+    const double grip = h.contact.friction * h.contact.normal.dot(p);
+    grip_change += std::abs(grip - h.grip);
+    grips += grip;
+  }
+  if (grip_change > 0.0) {
+    change.grip = grips > 0.0 ? grip_change / (grip_tolerance * grips) : no_limit;
+  }
+  // What is found anew pushes elsewhere, or is too deep and does not push yet.
+  std::vector<Vec3> difference(x.size(), Vec3::Zero());
+  add_reactions(difference);
+  for (Vec3& f : difference) f = -f;
+  find(x);
+  add_reactions(difference);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    if (compliance_[i] == 0.0 || difference[i].isZero(0.0)) continue;
+    const double k = hardness_ * ratio_ / compliance_[i];
+    change.distance = std::max(change.distance, difference[i].norm() / (k * tolerance_));
+  }
+  for (const Held& h : held_) {
+    if (h.push.isZero(0.0)) {
+      change.distance = std::max(change.distance, -h.contact.gap / tolerance_);
+    }
+  }
+  return change;
+}
+
+std::vector<ContactPush> ContactConstraints::pushes() const {
+  std::vector<ContactPush> out;
+  for (const Held& h : held_) {
+    if (h.push.isZero(0.0)) continue;
+    out.push_back({h.contact.key, h.contact.node[0], h.contact.obstacle, h.push});
+  }
+  return out;
+}
+
+double ContactConstraints::deepest(const std::vector<Vec3>& x) const {
+  double depth = 0.0;
+  for (const Held& h : held_) depth = std::max(depth, -contact_gap(h.contact, x));
+  return depth;
+}
+
+void ContactConstraints::add_obstacle_forces(std::vector<Vec3>& force) const {
+  for (const Held& h : held_) {
+    if (h.contact.obstacle >= 0) force[uz(h.contact.obstacle)] -= h.push;
+  }
+}
+
+double ContactConstraints::work_of_obstacles() const {
+  double work = 0.0;
+  for (const Held& h : held_) work += h.push.dot(h.contact.way);
+  return work;
+}
+
+double ContactConstraints::work_of_friction(const std::vector<Vec3>& x) const {
+  double work = 0.0;
+  for (const Held& h : held_) {
+    if (h.grip > 0.0) work -= h.push.dot(slip(h, x));
+  }
+  return work;
+}
+
+}  // namespace sinew

@@ -1,0 +1,88 @@
+// Contacts of bodies with each other, with themselves and with hard obstacles as part of what
+// implicit steps and rest states minimise. docs/methods/contact.md.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sinew/contact/contact.h"
+#include "sinew/contact/find.h"
+#include "sinew/model/state.h"
+
+namespace sinew {
+
+// A condition gap >= 0 with friction for every contact that was found, with places, weights and
+// normals as they were then: within a pass of minimise_within they stay, so that what is minimised
+// is smooth and has a tangent; update() finds them anew. Contacts keep their push from pass to pass
+// and from step to step by their key, or by the node where the partner has changed.
+class ContactConstraints {
+ public:
+  // compliance: of the nodes [m/N]; ratio: of a contact's stiffness and what its nodes resist with.
+  ContactConstraints(const Model& model, const std::vector<double>& compliance, double ratio,
+                     bool friction);
+
+  bool empty() const { return !finder_; }
+
+  // Takes the pushes of the state's last step. from: where the step starts [m] (nodes), null: rest
+  // states, without friction; `step` [s] before state.time.
+  void start(const State& state, const std::vector<Vec3>* from, double step);
+
+  double value(const std::vector<Vec3>& x) const;                               // [J]
+  void add_forces(const std::vector<Vec3>& x, std::vector<Vec3>& force) const;  // [N]
+  void add_reactions(std::vector<Vec3>& force) const;                           // [N]
+  void linearise(const std::vector<Vec3>& x);
+  void add_stiffness_times(const std::vector<Vec3>& u, std::vector<Vec3>& out) const;
+
+  // What linearise() found: sum_ab weight_a weight_b block between the contact's nodes.
+  struct Tangent {
+    const Contact* contact = nullptr;
+    Mat3 block = Mat3::Zero();  // [N/m]
+  };
+  const std::vector<Tangent>& tangents() const { return tangents_; }
+
+  // Makes the pushes at x the multipliers and finds the contacts at x. Returns how far pushes were
+  // off, over what is good enough; `grip`: the same for the normal forces that friction goes by.
+  struct Change {
+    double distance = 0.0;
+    double grip = 0.0;
+  };
+  Change update(const std::vector<Vec3>& x);
+  void harden(double factor) { hardness_ *= factor; }
+
+  std::vector<ContactPush> pushes() const;                   // those that push
+  double deepest(const std::vector<Vec3>& x) const;          // [m]
+  void add_obstacle_forces(std::vector<Vec3>& force) const;  // of the bodies on obstacles [N]
+  // Work of the pushes on the way of the obstacles' surfaces, and against the slip [J].
+  double work_of_obstacles() const;
+  double work_of_friction(const std::vector<Vec3>& x) const;
+
+ private:
+  struct Held {
+    Contact contact;
+    double stiffness = 0.0;     // [N/m]
+    double grip = 0.0;          // mu times the normal force of the pass before [N]
+    Vec3 push = Vec3::Zero();   // multiplier, on the place [N]
+    Vec3 start = Vec3::Zero();  // contact_offset where the step starts, the anchor there too [m]
+  };
+  void find(const std::vector<Vec3>& x);
+  Held hold(const Contact& c) const;
+  Vec3 slip(const Held& h, const std::vector<Vec3>& x) const;
+  Vec3 push(const Held& h, const std::vector<Vec3>& x) const;
+
+  const Model& model_;
+  double ratio_ = 0.0;
+  bool friction_ = false;
+  double tolerance_ = 0.0;  // [m]
+  double reach_ = 0.0;      // [m]
+  double hardness_ = 1.0;
+  std::vector<double> compliance_;  // [m/N] (nodes)
+  std::unique_ptr<ContactFinder> finder_;
+  const std::vector<Vec3>* from_ = nullptr;
+  std::vector<Vec3> here_;           // what stands for `from` in rest states [m] (nodes)
+  double before_ = 0.0, now_ = 0.0;  // times of the step [s]
+  std::vector<Contact> found_;
+  std::vector<Held> held_;  // by key
+  std::vector<Tangent> tangents_;
+};
+
+}  // namespace sinew
