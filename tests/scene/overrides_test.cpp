@@ -80,6 +80,9 @@ TEST(Overrides, NameTheirMistakes) {
   EXPECT_EQ(error("beam.young="),
             "--set beam.young=: no value after '='\n"
             "  remedy: an empty text is written as '\"\"'");
+  EXPECT_EQ(error("look_for=\xff\xfe"),
+            "--set look_for=\xff\xfe: the value is no text: some of its bytes are not UTF-8\n"
+            "  remedy: give numbers as 12.5, texts in UTF-8");
   EXPECT_EQ(error("=3"),
             "--set =3: a part of the key is empty\n"
             "  remedy: write --set beam.young=20e3");

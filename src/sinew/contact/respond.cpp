@@ -8,7 +8,7 @@
 namespace sinew {
 namespace {
 
-constexpr int most_sweeps = 20;
+constexpr int most_sweeps = 50;
 constexpr double small = 1e-3;  // share of the largest impulse below which a change is let be
 
 // A contact and what it has been given so far. "Along" is along the normal.
@@ -121,9 +121,9 @@ void sweep(std::vector<Impact>& impacts, const Turn& turn) {
 
 // The loss of an impact on its own as the flight has it, less what the mean of the velocities makes
 // of it: that does not see at which moment of the step the impact was. [J]
-double moment_correction(const Impact& i, double kick) {
+double moment_correction(const Impact& i, double kick, double h) {
   const double alone = i.mass * (i.after.velocity - i.velocity);  // impulse
-  if (!(alone > 0.0)) return 0.0;
+  if (!(alone > 0.0) || i.after.left == h) return 0.0;  // from the start: at no moment of it
   const double mean = 0.5 * (i.velocity - kick * i.pull + i.after.velocity);
   return std::min(1.0, i.impulse / alone) * (i.mass * i.after.loss + alone * mean);
 }
@@ -181,7 +181,7 @@ ContactReport respond_to_contacts(const Model& model, const std::vector<Contact>
     }
     const Vec3 after = relative(c, state.half_velocity);
     report.friction -= i.grip.dot(0.5 * (slide[k] - kick * pull + after) - i.speed);
-    report.dissipated += moment_correction(i, kick);
+    report.dissipated += moment_correction(i, kick, h);
     report.deepest = std::max(report.deepest, -contact_gap(c, state.position));
     if (c.obstacle >= 0) state.obstacle_force[uz(c.obstacle)] -= total / kick;
   }

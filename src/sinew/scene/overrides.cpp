@@ -140,10 +140,22 @@ class Override {
       DocValue document = parse_document("value = " + value_text_, "");
       if (document.entries.size() == 1) out = std::move(document.entries[0].value);
     } catch (const Error&) {
-      // A text without quotes.
+      require_text(out);  // without quotes
     }
     place(out);
     return out;
+  }
+
+  // The scene's document holds it, and has to be read back.
+  void require_text(const DocValue& value) const {
+    DocValue document;
+    document.entries.push_back({"value", value, where_});
+    try {
+      parse_document(write_document(document), "");
+    } catch (const Error&) {
+      throw Error(ErrorKind::input, "the value is no text: some of its bytes are not UTF-8",
+                  "give numbers as 12.5, texts in UTF-8", where_);
+    }
   }
 
   void place(DocValue& value) const {

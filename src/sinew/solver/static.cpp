@@ -11,6 +11,7 @@
 #include "sinew/forces/righting.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
+#include "sinew/solver/mean_edge.h"
 #include "sinew/solver/newton.h"
 
 namespace sinew {
