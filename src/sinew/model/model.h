@@ -10,6 +10,7 @@
 #include "sinew/base/vec.h"
 #include "sinew/model/material.h"
 #include "sinew/model/path.h"
+#include "sinew/model/touch_surface.h"
 
 namespace sinew {
 
@@ -166,6 +167,7 @@ struct Model {
                                       // between steps, by who owns the Model
   std::vector<double> surface_share;  // a third of the rest area of its surface triangles [m2]
                                       // (nodes of bodies); empty where there are no obstacles
+  TouchSurface surface;               // what may touch; empty where nothing does
 
   Index node_count() const { return static_cast<Index>(rest_position.size()); }
   Index tet_count() const { return static_cast<Index>(tets.size()); }

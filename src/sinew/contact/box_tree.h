@@ -1,0 +1,68 @@
+// Which boxes of a set overlap a given one: a binary tree whose shape is made once and whose boxes
+// follow the items as they move.
+#pragma once
+
+#include <array>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "sinew/base/vec.h"
+
+namespace sinew {
+
+// Axis-parallel [m]; empty until something is added.
+struct Box {
+  Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity());
+  Vec3 hi = Vec3::Constant(-std::numeric_limits<double>::infinity());
+
+  void add(const Vec3& x) {
+    lo = lo.cwiseMin(x);
+    hi = hi.cwiseMax(x);
+  }
+  void add(const Box& b) {
+    lo = lo.cwiseMin(b.lo);
+    hi = hi.cwiseMax(b.hi);
+  }
+  Box grown(double by) const {
+    Box b = *this;
+    b.lo.array() -= by;
+    b.hi.array() += by;
+    return b;
+  }
+  bool overlaps(const Box& b) const {
+    return (lo.array() <= b.hi.array()).all() && (b.lo.array() <= hi.array()).all();
+  }
+};
+
+class BoxTree {
+ public:
+  // The shape of the tree, from the items' centres: nearby ones share a branch.
+  explicit BoxTree(std::span<const Vec3> centres);
+  BoxTree() = default;
+
+  // The boxes of the items as they are now (items).
+  void refit(std::span<const Box> boxes);
+
+  // Box around all items.
+  const Box& bounds() const { return box_[0]; }
+  bool empty() const { return item_.empty(); }
+
+  // Appends the items whose boxes overlap `box`, in the tree's order.
+  void find(const Box& box, std::vector<Index>& items) const;
+
+ private:
+  static constexpr Index leaf_size = 4;
+  struct Node {
+    Range items;       // of item_
+    Index right = -1;  // the left child comes next; -1: a leaf
+  };
+  Index grow(std::span<const Vec3> centres, Range items);
+
+  std::vector<Node> node_;
+  std::vector<Box> box_;       // (nodes of the tree)
+  std::vector<Index> item_;    // items, leaf by leaf
+  std::vector<Box> item_box_;  // in that order
+};
+
+}  // namespace sinew

@@ -1,0 +1,35 @@
+// Finds what touches: surfaces of bodies and rigid meshes against each other, and of bodies against
+// themselves. docs/methods/contact.md.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "sinew/contact/contact.h"
+#include "sinew/contact/touch_surface.h"
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+// Scratch of a run: holds nothing that could not be computed again. What find() gives depends on
+// nothing but its arguments and the Model.
+class SurfaceContacts {
+ public:
+  explicit SurfaceContacts(const Model& model);
+  ~SurfaceContacts();
+  SurfaceContacts(SurfaceContacts&&) noexcept;
+  SurfaceContacts& operator=(SurfaceContacts&&) noexcept;
+
+  // The contacts of a step in which the nodes move from `from` to `to` [m] (nodes): pairs that are
+  // nearer than `reach` [m] >= 0 at its end, or inside (0: touching or inside), and those that met
+  // on the way. Sorted by key. Pairs that deep inside each other at both ends that no side can be
+  // told are left alone: find_overlaps() knows them.
+  void find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
+            std::vector<Contact>& out);
+
+ private:
+  struct Lists;
+  std::unique_ptr<Lists> lists_;
+};
+
+}  // namespace sinew

@@ -1,0 +1,18 @@
+// Builds the surface on which bodies and rigid meshes touch (model/touch_surface.h).
+#pragma once
+
+#include <span>
+
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+// Fills Model::surface with the surfaces of all bodies, from Model::tets and ::bodies; leaves it
+// empty where Model::touch has nothing. Rest lengths come from Model::rest_position.
+void build_touch_surface(Model& model);
+
+// Appends a rigid mesh as the next owner, after build_touch_surface(): triangles of node ids that
+// are higher than those of every owner before it, counter-clockwise from outside.
+void add_rigid_touch_surface(Model& model, std::span<const Triangle> triangles);
+
+}  // namespace sinew

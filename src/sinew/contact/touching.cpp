@@ -1,0 +1,377 @@
+#include "sinew/contact/touching.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/contact/meeting.h"
+
+namespace sinew {
+namespace {
+
+constexpr double opposed = 0.3;       // cosine of node's and triangle's normals, at most
+constexpr double opposed_self = 0.0;  // the same within a body
+constexpr std::uint64_t edge_kind = std::uint64_t{1} << 62;
+
+Vec3 area_normal(const std::vector<Vec3>& x, const Triangle& t) {
+  const Vec3& a = x[uz(t[0])];
+  return (x[uz(t[1])] - a).cross(x[uz(t[2])] - a);
+}
+
+// 0 where there is no direction.
+Vec3 unit(const Vec3& v) {
+  const double n = v.norm();
+  return n > 0.0 ? Vec3(v / n) : Vec3(Vec3::Zero());
+}
+
+OnTriangle nearest_on(const Vec3& p, const std::vector<Vec3>& x, const Triangle& t) {
+  return nearest_on_triangle(p, x[uz(t[0])], x[uz(t[1])], x[uz(t[2])]);
+}
+
+bool holds(const Triangle& t, Index node) {
+  return t[0] == node || t[1] == node || t[2] == node;
+}
+
+// How far the pair moves against each other within the step.
+double relative_motion(Index p, const Triangle& t, const Moves& m) {
+  const Vec3 dp = m.to[uz(p)] - m.from[uz(p)];
+  double most = 0.0;
+  for (const Index i : t) {
+    most = std::max(most, (m.to[uz(i)] - m.from[uz(i)] - dp).squaredNorm());
+  }
+  return std::sqrt(most);
+}
+
+NodeAndTriangle motion_of(Index p, Index a, Index b, Index c, const Moves& m) {
+  return {m.from[uz(p)], m.from[uz(a)], m.from[uz(b)], m.from[uz(c)],
+          m.to[uz(p)],   m.to[uz(a)],   m.to[uz(b)],   m.to[uz(c)]};
+}
+
+// A triangle in whose range a node is.
+struct Candidate {
+  Index triangle;
+  OnTriangle on;
+  double side;
+  Vec3 plane;
+};
+
+// Of the nearest candidates (several where the place is an edge or a corner) the one whose plane
+// the node is farthest from: on its side the node is of all of them (Baerentzen, Aanaes 2005, have
+// the case against the plane of any of them).
+const Candidate* pick(const std::vector<Candidate>& all) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Candidate& c : all) least = std::min(least, c.on.distance2);
+  const Candidate* best = nullptr;
+  for (const Candidate& c : all) {
+    if (!(c.on.distance2 <= least * (1.0 + 1e-7) + 1e-30)) continue;
+    if (!best || std::abs(c.side) > std::abs(best->side) * (1.0 + 1e-9)) best = &c;
+  }
+  return best;
+}
+
+}  // namespace
+
+Touching::Touching(const Model& model)
+    : surface_(model.surface), rest_(model.rest_position), rim_(model.rest_position.size(), 0) {
+  if (model.touch) {
+    friction_ = model.touch->friction;
+    restitution_ = model.touch->restitution;
+  }
+  triangle_owner_.resize(surface_.triangles.size());
+  open_.resize(surface_.triangles.size());
+  for (Index o = 0; o < surface_.owner_count(); ++o) {
+    double largest = 0.0;
+    const Range r = surface_.owner_triangles[uz(o)];
+    for (Index t = r.begin; t < r.end; ++t) {
+      triangle_owner_[uz(t)] = o;
+      largest = std::max(largest, surface_.triangle_size[uz(t)]);
+    }
+    largest_size_.push_back(largest);
+  }
+  for (std::size_t e = 0; e < surface_.edges.size(); ++e) {
+    if (surface_.edge_triangles[e][1] >= 0) continue;
+    const Index t = surface_.edge_triangles[e][0];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Index i = surface_.triangles[uz(t)][c];
+      if (i != surface_.edges[e][0] && i != surface_.edges[e][1]) open_[uz(t)][c] = 1;
+    }
+    for (const Index i : surface_.edges[e]) rim_[uz(i)] = 1;
+  }
+}
+
+double Touching::node_range(Index slot, Index owner, double reach) const {
+  return std::max(reach,
+                  depth_share * std::min(surface_.node_size[uz(slot)], largest_size_[uz(owner)]));
+}
+
+double Touching::edge_size(Index edge) const {
+  double size = std::numeric_limits<double>::infinity();
+  for (const Index t : surface_.edge_triangles[uz(edge)]) {
+    if (t >= 0) size = std::min(size, surface_.triangle_size[uz(t)]);
+  }
+  return size;
+}
+
+double Touching::edge_range(Index edge, Index owner, double reach) const {
+  return std::max(reach, depth_share * std::min(edge_size(edge), largest_size_[uz(owner)]));
+}
+
+double Touching::rest_distance(Index node, const Triangle& t) const {
+  return std::sqrt(nearest_on(rest_[uz(node)], rest_, t).distance2);
+}
+
+double Touching::rest_distance(const Edge& a, const Edge& b) const {
+  const Vec3 &a0 = rest_[uz(a[0])], &a1 = rest_[uz(a[1])];
+  const Vec3 &b0 = rest_[uz(b[0])], &b1 = rest_[uz(b[1])];
+  const auto to_segment = [](const Vec3& p, const Vec3& c, const Vec3& d) {
+    return (p - c - nearest_on_segment(p, c, d) * (d - c)).norm();
+  };
+  const double ends = std::min(std::min(to_segment(a0, b0, b1), to_segment(a1, b0, b1)),
+                               std::min(to_segment(b0, a0, a1), to_segment(b1, a0, a1)));
+  const OnLines on = nearest_on_lines(a0, a1, b0, b1);
+  if (on.parallel || on.s < 0.0 || on.s > 1.0 || on.t < 0.0 || on.t > 1.0) return ends;
+  return std::min(ends, (a0 + on.s * (a1 - a0) - b0 - on.t * (b1 - b0)).norm());
+}
+
+Vec3 Touching::node_normal(Index slot, const std::vector<Vec3>& x) const {
+  Vec3 sum = Vec3::Zero();
+  for (Index k = surface_.ring_start[uz(slot)]; k < surface_.ring_start[uz(slot) + 1]; ++k) {
+    sum += area_normal(x, surface_.triangles[uz(surface_.ring[uz(k)])]);
+  }
+  return unit(sum);
+}
+
+bool Touching::on_boundary(Index t, const OnTriangle& on) const {
+  const Triangle& tri = surface_.triangles[uz(t)];
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (on.weight[c] == 1.0) return rim_[uz(tri[c])] != 0;
+  }
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (on.weight[c] == 0.0) return open_[uz(t)][c] != 0;
+  }
+  return false;
+}
+
+// Whether a node and a triangle of one body, now near each other, have come together from
+// elsewhere, rather than being neighbours, or opposite sides of the same piece of material.
+bool Touching::self_pair_counts(Index slot, Index t, const OnTriangle& on, double side,
+                                const std::vector<Vec3>& from) const {
+  const Index node = surface_.nodes[uz(slot)];
+  const Triangle& tri = surface_.triangles[uz(t)];
+  const double apart = rest_distance(node, tri);
+  const double distance = std::sqrt(on.distance2);
+  if (distance < self_share * apart) {
+    if (side >= 0.0) return true;
+    // Through the material at rest: only if it has come from the front.
+    const Vec3 n = area_normal(rest_, tri);
+    const double behind = unit(n).dot(rest_[uz(node)] - rest_[uz(tri[0])]);
+    if (!(behind < 0.0 && node_normal(slot, rest_).dot(n) < 0.0)) return true;
+    const Vec3 now = unit(area_normal(from, tri));
+    return now.dot(from[uz(node)] - from[uz(tri[0])]) > -0.2 * self_share * apart;
+  }
+  if (side >= 0.0) return false;
+  // The two sides of a slit, which at rest face each other over a gap, not over material.
+  const Vec3 n = unit(area_normal(rest_, tri));
+  const double front = n.dot(rest_[uz(node)] - rest_[uz(tri[0])]);
+  return front > 0.5 * apart && node_normal(slot, rest_).dot(n) < -0.5;
+}
+
+Touching::Nearest Touching::nearest(Index slot, bool self, std::span<const Index> triangles,
+                                    const std::vector<Vec3>& x, const std::vector<Vec3>& from,
+                                    double range) const {
+  const Index node = surface_.nodes[uz(slot)];
+  const Vec3& p = x[uz(node)];
+  std::vector<Candidate> all;
+  for (const Index t : triangles) {
+    const Triangle& tri = surface_.triangles[uz(t)];
+    if (self && holds(tri, node)) continue;
+    const OnTriangle on = nearest_on(p, x, tri);
+    if (!(on.distance2 <= range * range)) continue;
+    const Vec3 plane = unit(area_normal(x, tri));
+    const double side = plane.dot(p - on.point);
+    if (self && !self_pair_counts(slot, t, on, side, from)) continue;
+    all.push_back({t, on, side, plane});
+  }
+  Nearest result;
+  if (all.empty()) return result;
+  const auto near_of = [&](const Candidate& c) {
+    Near n = {c.triangle, c.on, c.side, c.plane, false};
+    n.inside = c.side < 0.0 && !on_boundary(c.triangle, c.on);
+    return n;
+  };
+  if (!self) result.any = near_of(*pick(all));
+  const Vec3 normal = node_normal(slot, x);
+  const double limit = self ? opposed_self : opposed;
+  std::erase_if(all, [&](const Candidate& c) { return !(normal.dot(c.plane) < limit); });
+  if (all.empty()) return result;
+  result.fit = near_of(*pick(all));
+  if (self) result.any = result.fit;
+  return result;
+}
+
+// The contact at a place that was found at the end of the step.
+bool Touching::node_contact_of(Index slot, const Near& near, double range, const Moves& moves,
+                               Contact& c) const {
+  const Triangle& tri = surface_.triangles[uz(near.triangle)];
+  const Vec3 r = moves.to[uz(surface_.nodes[uz(slot)])] - near.on.point;
+  const double distance = std::sqrt(near.on.distance2);
+  const bool face = near.on.weight[0] > 0.0 && near.on.weight[1] > 0.0 && near.on.weight[2] > 0.0;
+  c.normal = near.plane;
+  if (!face && !near.inside && distance > 1e-6 * range) c.normal = r / distance;
+  if (!face && near.inside && distance > 1e-6 * range) c.normal = -r / distance;
+  if (!(c.normal.squaredNorm() > 0.5)) return false;
+  for (std::size_t k = 0; k < 3; ++k) {
+    c.node[k + 1] = tri[k];
+    c.weight[k + 1] = -near.on.weight[k];
+  }
+  return true;
+}
+
+bool Touching::node_touches(Index slot, Index owner, std::span<const Index> triangles,
+                            const Moves& moves, Contact& c) const {
+  const Index node = surface_.nodes[uz(slot)];
+  const bool self = triangles.empty() ? false : surface_.owner_nodes[uz(owner)].contains(slot);
+  const double range = node_range(slot, owner, moves.reach);
+  const Nearest end = nearest(slot, self, triangles, moves.to, moves.from, range);
+
+  c = Contact{};
+  c.count = 4;
+  c.friction = friction_;
+  c.restitution = restitution_;
+  c.node[0] = node;
+  c.weight[0] = 1.0;
+
+  // On the way.
+  Meeting hit;
+  Index hit_triangle = -1;
+  bool calm = true;
+  for (const Index t : triangles) {
+    const double size = std::min(surface_.node_size[uz(slot)], surface_.triangle_size[uz(t)]);
+    calm = calm && relative_motion(node, surface_.triangles[uz(t)], moves) <= calm_share * size;
+  }
+  if (!calm) {
+    const Nearest start = nearest(slot, self, triangles, moves.from, moves.from, range);
+    if (start.any.inside && start.fit.triangle >= 0 && start.fit.inside &&
+        std::sqrt(start.fit.on.distance2) <= pair_depth(slot, start.fit.triangle)) {
+      hit = {true, 0.0, start.fit.on.weight, start.fit.plane};
+      hit_triangle = start.fit.triangle;
+    } else {
+      for (const Index t : triangles) {
+        const Triangle& tri = surface_.triangles[uz(t)];
+        if (self && (holds(tri, node) || rest_distance(node, tri) == 0.0)) continue;
+        const Meeting m = node_meets_triangle(motion_of(node, tri[0], tri[1], tri[2], moves));
+        if (!m.met || (hit.met && hit.moment <= m.moment)) continue;
+        hit = m;
+        hit_triangle = t;
+      }
+    }
+  }
+
+  // At the end.
+  const bool deep = end.any.inside && end.fit.inside &&
+                    std::sqrt(end.fit.on.distance2) <= pair_depth(slot, end.fit.triangle);
+  const bool close = !end.any.inside && end.fit.triangle >= 0 && !end.fit.inside &&
+                     std::sqrt(end.fit.on.distance2) < moves.reach;
+  const auto finish = [&](Index t) {
+    c.gap = contact_gap(c, moves.to);
+    c.key = (static_cast<std::uint64_t>(slot) << 31) | static_cast<std::uint64_t>(t);
+    return c.gap < moves.reach || (c.gap <= 0.0 && moves.reach == 0.0);
+  };
+  if (hit.met && !(deep && hit.normal.dot(end.fit.plane) > 0.5)) {
+    const Triangle& tri = surface_.triangles[uz(hit_triangle)];
+    for (std::size_t k = 0; k < 3; ++k) {
+      c.node[k + 1] = tri[k];
+      c.weight[k + 1] = -hit.weight[k];
+    }
+    c.normal = hit.normal;
+    c.moment = hit.moment;
+    if (finish(hit_triangle)) return true;
+  }
+  if (!(deep || close)) return false;
+  if (!node_contact_of(slot, end.fit, range, moves, c)) return false;
+  if (hit.met) {
+    c.moment = hit.moment;
+  } else {  // the gap as if it changed evenly
+    const double before = contact_gap(c, moves.from);
+    const double after = contact_gap(c, moves.to);
+    c.moment = before <= 0.0 ? 0.0 : (after < 0.0 ? before / (before - after) : 1.0);
+  }
+  return finish(end.fit.triangle);
+}
+
+// Whether the surface around an edge lies behind the plane through it with normal n, at a moment of
+// the step: n is then one of the normals at which the edge can be touched. `slack`: the sine of the
+// angle by which it may rise above.
+bool Touching::supports(Index edge, const Vec3& n, const Moves& m, double moment,
+                        double slack) const {
+  const Edge& e = surface_.edges[uz(edge)];
+  const auto at = [&](Index i) { return between(m.from[uz(i)], m.to[uz(i)], moment); };
+  const Vec3 a = at(e[0]);
+  const Vec3 along = unit(at(e[1]) - a);
+  Vec3 out = Vec3::Zero();
+  for (const Index t : surface_.edge_triangles[uz(edge)]) {
+    if (t < 0) return false;
+    const Triangle& tri = surface_.triangles[uz(t)];
+    for (const Index i : tri) {
+      if (i == e[0] || i == e[1]) continue;
+      const Vec3 r = at(i) - a;
+      const double height = (r - along.dot(r) * along).norm();
+      if (!(n.dot(r) <= slack * height)) return false;
+    }
+    const Vec3 p = at(tri[0]);
+    out += unit((at(tri[1]) - p).cross(at(tri[2]) - p));
+  }
+  return n.dot(out) > 0.0;
+}
+
+bool Touching::edges_touch(Index ea, Index eb, const Moves& moves, Contact& c) const {
+  const Edge &a = surface_.edges[uz(ea)], &b = surface_.edges[uz(eb)];
+  if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) return false;
+  const double size = std::min(edge_size(ea), edge_size(eb));
+  const bool self = triangle_owner_[uz(surface_.edge_triangles[uz(ea)][0])] ==
+                    triangle_owner_[uz(surface_.edge_triangles[uz(eb)][0])];
+  c = Contact{};
+  c.count = 4;
+  c.friction = friction_;
+  c.restitution = restitution_;
+  c.node = {a[0], a[1], b[0], b[1]};
+  c.key = edge_kind | (static_cast<std::uint64_t>(ea) << 31) | static_cast<std::uint64_t>(eb);
+  const auto set = [&](double s, double t, const Vec3& n) {
+    c.weight = {1.0 - s, s, t - 1.0, -t};
+    c.normal = n;
+    c.gap = contact_gap(c, moves.to);
+  };
+
+  // At the end.
+  const auto& x = moves.to;
+  const OnLines on = nearest_on_lines(x[uz(a[0])], x[uz(a[1])], x[uz(b[0])], x[uz(b[1])]);
+  if (!on.parallel && on.s > 0.0 && on.s < 1.0 && on.t > 0.0 && on.t < 1.0) {
+    Vec3 n = unit((x[uz(a[1])] - x[uz(a[0])]).cross(x[uz(b[1])] - x[uz(b[0])]));
+    for (int turn = 0; turn < 2; ++turn, n = -n) {
+      if (!supports(eb, n, moves, 1.0, 0.1) || !supports(ea, -n, moves, 1.0, 0.1)) continue;
+      set(on.s, on.t, n);
+      if (!(c.gap < moves.reach || (c.gap <= 0.0 && moves.reach == 0.0))) continue;
+      if (c.gap < -depth_share * size) continue;
+      if (self && !(std::abs(c.gap) < self_share * rest_distance(a, b))) continue;
+      const double before = contact_gap(c, moves.from);
+      c.moment = before <= 0.0 ? 0.0 : (c.gap < 0.0 ? before / (before - c.gap) : 1.0);
+      return true;
+    }
+  }
+
+  // On the way.
+  const auto move = [&](Index i) -> Vec3 { return moves.to[uz(i)] - moves.from[uz(i)]; };
+  double motion = 0.0;
+  for (const Index i : a) {
+    for (const Index j : b) motion = std::max(motion, (move(i) - move(j)).squaredNorm());
+  }
+  if (!(motion > calm_share * calm_share * size * size)) return false;
+  const Meeting hit = edge_meets_edge(motion_of(a[0], a[1], b[0], b[1], moves));
+  if (!hit.met || (self && rest_distance(a, b) == 0.0)) return false;
+  if (!supports(eb, hit.normal, moves, hit.moment, 0.25)) return false;
+  if (!supports(ea, -hit.normal, moves, hit.moment, 0.25)) return false;
+  set(hit.weight[0], hit.weight[1], hit.normal);
+  c.moment = hit.moment;
+  return c.gap < moves.reach || (c.gap <= 0.0 && moves.reach == 0.0);
+}
+
+}  // namespace sinew

@@ -1,0 +1,98 @@
+// Whether a node touches a surface, or an edge an edge: the narrow phase of contact. What decides
+// stands in docs/methods/contact.md.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/contact/contact.h"
+#include "sinew/contact/nearest.h"
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+// The positions of all nodes at both ends of a step [m], and how near counts as touching [m].
+struct Moves {
+  const std::vector<Vec3>& from;
+  const std::vector<Vec3>& to;
+  double reach = 0.0;
+};
+
+class Touching {
+ public:
+  // How deep a node may be inside and still be led out, as a share of the local size (size of the
+  // triangles); how far a pair may move against each other in a step without being followed on the
+  // way; how close to each other, as a share of their distance at rest, two places of one body
+  // have to come.
+  static constexpr double depth_share = 0.35;
+  static constexpr double calm_share = 0.15;
+  static constexpr double self_share = 0.25;
+  static constexpr double sharp = 0.21;     // [rad] edges that turn by more meet other edges
+  static constexpr double concave = -0.09;  // [rad] edges that turn by less meet none
+
+  explicit Touching(const Model& model);
+
+  // Farther away than this at the end of the step, a node does not touch an owner's surface, but
+  // for triangles that it went through on the way.
+  double node_range(Index node_slot, Index owner, double reach) const;
+  double edge_range(Index edge, Index owner, double reach) const;
+  bool may_meet(Index edge, Index other) const {
+    const double a = surface_.edge_bend[uz(edge)], b = surface_.edge_bend[uz(other)];
+    return (a > sharp && b > concave) || (b > sharp && a > concave);
+  }
+
+  // The contact of a node with an owner's surface, of which `triangles` (rising) holds at least
+  // those within node_range at either end of the step and those that it may meet on the way. The
+  // node may belong to that owner. False: none.
+  bool node_touches(Index node_slot, Index owner, std::span<const Index> triangles,
+                    const Moves& moves, Contact& contact) const;
+
+  // The contact of edge a with edge b, what is touched. False: none.
+  bool edges_touch(Index a, Index b, const Moves& moves, Contact& contact) const;
+
+  const TouchSurface& surface() const { return surface_; }
+  Index owner_of_triangle(Index t) const { return triangle_owner_[uz(t)]; }
+  double largest_size(Index owner) const { return largest_size_[uz(owner)]; }
+
+  // The distance of a node from a triangle, of two edges, in the rest shape [m].
+  double rest_distance(Index node, const Triangle& t) const;
+  double rest_distance(const Edge& a, const Edge& b) const;
+
+ private:
+  struct Near {
+    Index triangle = -1;
+    OnTriangle on;
+    double side = 0.0;  // of the triangle's plane: > 0 in front [m]
+    Vec3 plane = Vec3::Zero();
+    bool inside = false;
+  };
+  // The nearest triangle of a set, and of those that may hold the node.
+  struct Nearest {
+    Near any;
+    Near fit;
+  };
+  Vec3 node_normal(Index slot, const std::vector<Vec3>& x) const;
+  Nearest nearest(Index slot, bool self, std::span<const Index> triangles,
+                  const std::vector<Vec3>& x, const std::vector<Vec3>& from, double range) const;
+  bool self_pair_counts(Index slot, Index t, const OnTriangle& on, double side,
+                        const std::vector<Vec3>& from) const;
+  bool on_boundary(Index t, const OnTriangle& on) const;
+  bool node_contact_of(Index slot, const Near& near, double range, const Moves& moves,
+                       Contact& contact) const;
+  double pair_depth(Index slot, Index t) const {
+    return depth_share * std::min(surface_.node_size[uz(slot)], surface_.triangle_size[uz(t)]);
+  }
+  double edge_size(Index edge) const;
+  bool supports(Index edge, const Vec3& n, const Moves& moves, double t, double slack) const;
+
+  TouchSurface surface_;
+  std::vector<Vec3> rest_;                 // [m] (nodes of the model)
+  std::vector<Index> triangle_owner_;      // (triangles)
+  std::vector<double> largest_size_;       // of its triangles [m] (owners)
+  std::vector<std::array<char, 3>> open_;  // 1: no triangle beyond the edge opposite (triangles)
+  std::vector<char> rim_;                  // 1: on such an edge (nodes of the model)
+  double friction_ = 0.0;
+  double restitution_ = 0.0;
+};
+
+}  // namespace sinew

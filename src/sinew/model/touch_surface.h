@@ -1,0 +1,35 @@
+// The surfaces that may touch: those of the bodies and of rigid meshes, in one list. Built once by
+// contact/touch_surface.h; what is found on it: contact/surfaces.h.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "sinew/base/vec.h"
+
+namespace sinew {
+
+// Nodes and triangles lie owner by owner. An owner is a body (its index) or, from bodies.size() on,
+// a rigid mesh. Lengths are of the rest shape.
+struct TouchSurface {
+  std::vector<Index> nodes;           // node ids, rising (nodes)
+  std::vector<double> node_size;      // mean size of the triangles around it [m] (nodes)
+  std::vector<Index> ring_start;      // offsets into ring (nodes + 1)
+  std::vector<Index> ring;            // triangles around the node, rising
+  std::vector<Triangle> triangles;    // node ids, counter-clockwise from outside (triangles)
+  std::vector<double> triangle_size;  // mean edge, or the height of the tet behind it where that is
+                                      // less [m] (triangles)
+  std::vector<Edge> edges;            // node ids (edges), owner by owner
+  std::vector<std::array<Index, 2>> edge_triangles;  // on both sides (edges); -1: none there
+  std::vector<double> edge_bend;       // [rad] (edges) between the triangles' normals: > 0 convex,
+                                       // 0 where there are not two triangles
+  std::vector<Range> owner_nodes;      // ranges of `nodes` (owners)
+  std::vector<Range> owner_triangles;  // of `triangles` (owners)
+  std::vector<Range> owner_edges;      // of `edges` (owners)
+  Index body_count = 0;                // owners from here on are rigid
+
+  bool empty() const { return triangles.empty(); }
+  Index owner_count() const { return static_cast<Index>(owner_nodes.size()); }
+};
+
+}  // namespace sinew
