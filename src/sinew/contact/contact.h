@@ -34,7 +34,7 @@ struct Contact {
   double friction = 0.0;       // [-] Coulomb's mu
   double restitution = 0.0;    // [-]
   Index obstacle = -1;         // the collider, index into Model::obstacles; -1: none
-  std::uint64_t key = 0;       // of the pair: the same from step to step; they are sorted by it
+  std::uint64_t key = 0;       // of the pair: the same from step to step; unique with `obstacle`
 };
 
 // Where the contact's place is, seen from what it touches [m].
@@ -43,6 +43,11 @@ inline Vec3 contact_offset(const Contact& c, const std::vector<Vec3>& x) {
   for (int a = 0; a < c.count; ++a)
     r += c.weight[static_cast<std::size_t>(a)] * x[uz(c.node[static_cast<std::size_t>(a)])];
   return r;
+}
+
+// The order of contacts: those between bodies, then obstacle by obstacle, by key.
+inline bool comes_before(const Contact& a, const Contact& b) {
+  return a.obstacle != b.obstacle ? a.obstacle < b.obstacle : a.key < b.key;
 }
 
 inline double contact_gap(const Contact& c, const std::vector<Vec3>& x) {

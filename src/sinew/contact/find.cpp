@@ -21,12 +21,16 @@ bool ContactFinder::anything_to_find(const Model& model) {
 
 void ContactFinder::find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0,
                          double t1, double reach, std::vector<Contact>& contacts) {
+  const auto first = std::ssize(contacts);
   std::vector<Contact> part;
-  if (surfaces_) surfaces_->find(from, to, reach, contacts);
+  if (surfaces_) {
+    surfaces_->find(from, to, reach, part);
+    contacts.insert(contacts.end(), part.begin(), part.end());
+    part.clear();
+  }
   find_collider_contacts(model_, from, to, t0, t1, reach, part);
   contacts.insert(contacts.end(), part.begin(), part.end());
-  std::sort(contacts.begin(), contacts.end(),
-            [](const Contact& a, const Contact& b) { return a.key < b.key; });
+  std::sort(contacts.begin() + first, contacts.end(), comes_before);
 }
 
 }  // namespace sinew

@@ -21,7 +21,7 @@ class ContactFinder {
   static bool anything_to_find(const Model& model);
 
   // Contacts of a step from positions `from` at time t0 to `to` at time t1 (nodes): places whose
-  // gap at `to` is below `reach` [m], and those that met on the way. Appends them sorted by key;
+  // gap at `to` is below `reach` [m], and those that met on the way. Appends them, sorted;
   // they depend on nothing but the model and the arguments.
   void find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0, double t1,
             double reach, std::vector<Contact>& contacts);

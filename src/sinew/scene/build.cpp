@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "sinew/contact/touch_surface.h"
 #include "sinew/forces/assemble.h"
 #include "sinew/forces/laws.h"
 #include "sinew/forces/loads.h"
@@ -330,6 +331,7 @@ Model build_model(const Scene& scene, BuildReport* report) {
     model.ground = Ground{g->point, g->normal, g->restitution, g->friction};
   if (const auto& c = scene.contact)
     model.touch = Touch{c->bodies, c->self, c->friction, c->restitution};
+  build_touch_surface(model);
   Parts(scene, bodies, model).add();
   finish(model);
   return model;
