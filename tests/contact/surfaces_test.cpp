@@ -22,8 +22,11 @@ TEST(SurfaceContacts, TwoCubesThatLieOnEachOther) {
     to[uz(i)].y() -= 1e-4;
   }
   const std::vector<Contact> found = contacts_of(model, model.rest_position, to);
-  // 4 x 4 nodes of either overlap the other's face.
-  EXPECT_EQ(found.size(), 32u);
+  // 4 x 4 nodes of either overlap the other's face; edges meet where the rims cross only.
+  std::size_t nodes = 0;
+  for (const Contact& c : found) nodes += c.weight[0] == 1.0;
+  EXPECT_EQ(nodes, 32u);
+  EXPECT_LE(found.size(), 36u);
   for (const Contact& c : found) {
     EXPECT_NEAR(c.gap, -1e-4, 1e-12);
     EXPECT_NEAR(std::abs(c.normal.y()), 1.0, 1e-12);

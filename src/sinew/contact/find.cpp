@@ -16,7 +16,7 @@ ContactFinder::~ContactFinder() = default;
 bool ContactFinder::anything_to_find(const Model& model) {
   return !model.surface.triangles.empty() ||
          std::any_of(model.obstacles.begin(), model.obstacles.end(),
-                     [](const Obstacle& o) { return o.stiffness == 0.0; });
+                     [](const Obstacle& o) { return o.hard(); });
 }
 
 void ContactFinder::find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0,

@@ -89,4 +89,16 @@ inline OnLines nearest_on_lines(const Vec3& a, const Vec3& b, const Vec3& c, con
   return on;
 }
 
+// How far two segments are from each other.
+inline double segments_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
+  const auto away = [](const Vec3& p, const Vec3& e, const Vec3& f) {
+    return (p - e - nearest_on_segment(p, e, f) * (f - e)).norm();
+  };
+  const double ends =
+      std::min(std::min(away(a, c, d), away(b, c, d)), std::min(away(c, a, b), away(d, a, b)));
+  const OnLines on = nearest_on_lines(a, b, c, d);
+  if (on.parallel || on.s < 0.0 || on.s > 1.0 || on.t < 0.0 || on.t > 1.0) return ends;
+  return std::min(ends, (a + on.s * (b - a) - c - on.t * (d - c)).norm());
+}
+
 }  // namespace sinew

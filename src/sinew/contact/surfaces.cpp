@@ -2,101 +2,117 @@
 
 #include <algorithm>
 
-#include "sinew/contact/box_tree.h"
+#include "sinew/base/parallel.h"
+#include "sinew/contact/near_lists.h"
 #include "sinew/contact/touching.h"
 
 namespace sinew {
 
-struct SurfaceContacts::Lists {
-  explicit Lists(const Model& model)
-      : touching(model), touch(model.touch.value_or(Touch{false, false})) {
-    const TouchSurface& s = touching.surface();
-    for (Index o = 0; o < s.owner_count(); ++o) {
-      std::vector<Vec3> centres;
-      const Range triangles = s.owner_triangles[uz(o)];
-      for (Index t = triangles.begin; t < triangles.end; ++t) {
-        const Triangle& tri = s.triangles[uz(t)];
-        centres.push_back((model.rest_position[uz(tri[0])] + model.rest_position[uz(tri[1])] +
-                           model.rest_position[uz(tri[2])]) /
-                          3.0);
-      }
-      triangle_tree.emplace_back(centres);
-      centres.clear();
-      const Range edges = s.owner_edges[uz(o)];
-      for (Index e = edges.begin; e < edges.end; ++e) {
-        centres.push_back(0.5 * (model.rest_position[uz(s.edges[uz(e)][0])] +
-                                 model.rest_position[uz(s.edges[uz(e)][1])]));
-      }
-      edge_tree.emplace_back(centres);
+struct SurfaceContacts::Search {
+  explicit Search(const Model& model)
+      : touching(model),
+        lists(model, touching),
+        held(model.surface.nodes.size(), -1),
+        slot_of(model.rest_position.size(), -1) {
+    for (std::size_t i = 0; i < model.surface.nodes.size(); ++i) {
+      slot_of[uz(model.surface.nodes[i])] = static_cast<Index>(i);
     }
   }
 
-  Touching touching;
-  Touch touch;
-  std::vector<BoxTree> triangle_tree;  // (owners)
-  std::vector<BoxTree> edge_tree;      // (owners)
-};
+  void add_nodes(const NearPair& pair, const NearList& list, Index owner, Index pair_number,
+                 const Moves& moves, std::vector<Contact>& out);
+  void add_edges(const NearPair& pair, Index pair_number, const Moves& moves,
+                 std::vector<Contact>& out);
+  bool carried(Index edge, Index pair_number) const;
 
-SurfaceContacts::SurfaceContacts(const Model& model) : lists_(std::make_unique<Lists>(model)) {}
-SurfaceContacts::~SurfaceContacts() = default;
-SurfaceContacts::SurfaceContacts(SurfaceContacts&&) noexcept = default;
-SurfaceContacts& SurfaceContacts::operator=(SurfaceContacts&&) noexcept = default;
+  Touching touching;
+  NearLists lists;
+  std::vector<Index> held;     // the pair in which the node was last found to touch (node slots)
+  std::vector<Index> slot_of;  // -1: not on a surface (nodes of the model)
+};
 
 namespace {
 
-template <std::size_t n>
-Box swept(const std::array<Index, n>& nodes, const Moves& m) {
-  Box b;
-  for (const Index i : nodes) {
-    b.add(m.from[uz(i)]);
-    b.add(m.to[uz(i)]);
+// Appends what `add(range, contacts)` finds in the blocks of [0, count), in their order.
+template <typename Add>
+void add_in_order(Index count, std::vector<Contact>& out, const Add& add) {
+  if (block_count(count) <= 1) {
+    add(Range{0, count}, out);
+    return;
   }
-  return b;
+  std::vector<std::vector<Contact>> parts(uz(block_count(count)));
+  parallel_blocks(count, [&](Index b, Range r) { add(r, parts[uz(b)]); });
+  for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());
 }
 
 }  // namespace
 
+void SurfaceContacts::Search::add_nodes(const NearPair& pair, const NearList& list, Index owner,
+                                        Index pair_number, const Moves& moves,
+                                        std::vector<Contact>& out) {
+  const std::size_t before = out.size();
+  add_in_order(list.count(), out, [&](Range r, std::vector<Contact>& found) {
+    Contact contact;
+    for (Index k = r.begin; k < r.end; ++k) {
+      if (touching.node_touches(list.key[uz(k)], owner, list.of(k), pair.calm, moves, contact)) {
+        found.push_back(contact);
+      }
+    }
+  });
+  for (std::size_t i = before; i < out.size(); ++i) {
+    held[uz(slot_of[uz(out[i].node[0])])] = pair_number;
+  }
+}
+
+// Whether both ends of an edge touch the other owner already: a flat edge there adds nothing.
+bool SurfaceContacts::Search::carried(Index edge, Index pair_number) const {
+  const Edge& e = touching.surface().edges[uz(edge)];
+  return held[uz(slot_of[uz(e[0])])] == pair_number && held[uz(slot_of[uz(e[1])])] == pair_number;
+}
+
+void SurfaceContacts::Search::add_edges(const NearPair& pair, Index pair_number,
+                                        const Moves& moves, std::vector<Contact>& out) {
+  const TouchSurface& s = touching.surface();
+  const NearList& list = pair.edges;
+  add_in_order(list.count(), out, [&](Range r, std::vector<Contact>& found) {
+    Contact contact;
+    for (Index k = r.begin; k < r.end; ++k) {
+      const Index a = list.key[uz(k)];
+      const bool a_sharp = s.edge_bend[uz(a)] > Touching::sharp;
+      const bool a_carried = carried(a, pair_number);
+      for (const Index b : list.of(k)) {
+        const bool b_sharp = s.edge_bend[uz(b)] > Touching::sharp;
+        if (!b_sharp && a_carried) continue;
+        if (!a_sharp && carried(b, pair_number)) continue;
+        if (touching.edges_touch(a, b, pair.calm, moves, contact)) found.push_back(contact);
+      }
+    }
+  });
+}
+
+SurfaceContacts::SurfaceContacts(const Model& model) : search_(std::make_unique<Search>(model)) {}
+SurfaceContacts::~SurfaceContacts() = default;
+SurfaceContacts::SurfaceContacts(SurfaceContacts&&) noexcept = default;
+SurfaceContacts& SurfaceContacts::operator=(SurfaceContacts&&) noexcept = default;
+
+std::int64_t SurfaceContacts::lists_made() const {
+  return search_->lists.built();
+}
+
 void SurfaceContacts::find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
                            std::vector<Contact>& out) {
   out.clear();
-  const Touching& touching = lists_->touching;
-  const TouchSurface& s = touching.surface();
   const Moves moves = {from, to, reach};
-  for (Index o = 0; o < s.owner_count(); ++o) {
-    std::vector<Box> boxes;
-    for (Index t = s.owner_triangles[uz(o)].begin; t < s.owner_triangles[uz(o)].end; ++t) {
-      boxes.push_back(swept(s.triangles[uz(t)], moves));
-    }
-    lists_->triangle_tree[uz(o)].refit(boxes);
-    boxes.clear();
-    for (Index e = s.owner_edges[uz(o)].begin; e < s.owner_edges[uz(o)].end; ++e) {
-      boxes.push_back(swept(s.edges[uz(e)], moves));
-    }
-    lists_->edge_tree[uz(o)].refit(boxes);
+  std::fill(search_->held.begin(), search_->held.end(), -1);
+  Index number = 0;
+  for (const NearPair* pair : search_->lists.update(moves)) {
+    search_->add_nodes(*pair, pair->nodes_of_a, pair->b, number, moves, out);
+    search_->add_nodes(*pair, pair->nodes_of_b, pair->a, number, moves, out);
+    search_->add_edges(*pair, number, moves, out);
+    ++number;
   }
-  std::vector<Index> near;
-  Contact contact;
-  for (Index a = 0; a < s.owner_count(); ++a) {
-    for (Index b = 0; b < s.owner_count(); ++b) {
-      if (a == b ? a >= s.body_count || !lists_->touch.self : !lists_->touch.bodies) continue;
-      if (a >= s.body_count && b >= s.body_count) continue;
-      const BoxTree& tree = lists_->triangle_tree[uz(b)];
-      if (tree.empty()) continue;
-      const Range slots = s.owner_nodes[uz(a)];
-      for (Index slot = slots.begin; slot < slots.end; ++slot) {
-        const Box box = swept(std::array<Index, 1>{s.nodes[uz(slot)]}, moves)
-                            .grown(touching.node_range(slot, b, reach));
-        near.clear();
-        tree.find(box, near);
-        if (near.empty()) continue;
-        for (Index& t : near) t += s.owner_triangles[uz(b)].begin;
-        std::sort(near.begin(), near.end());
-        if (touching.node_touches(slot, b, near, moves, contact)) out.push_back(contact);
-      }
-    }
-  }
-  std::sort(out.begin(), out.end(),
-            [](const Contact& p, const Contact& q) { return p.key < q.key; });
+  const auto by_key = [](const Contact& p, const Contact& q) { return p.key < q.key; };
+  if (!std::is_sorted(out.begin(), out.end(), by_key)) std::sort(out.begin(), out.end(), by_key);
 }
 
 }  // namespace sinew

@@ -2,6 +2,7 @@
 // themselves. docs/methods/contact.md.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -27,9 +28,12 @@ class SurfaceContacts {
   void find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
             std::vector<Contact>& out);
 
+  // How often the lists of what is near were made anew: for tests and measurements.
+  std::int64_t lists_made() const;
+
  private:
-  struct Lists;
-  std::unique_ptr<Lists> lists_;
+  struct Search;
+  std::unique_ptr<Search> search_;
 };
 
 }  // namespace sinew

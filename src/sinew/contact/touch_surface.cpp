@@ -56,7 +56,8 @@ void add_edges(const std::vector<Vec3>& x, Range triangles, TouchSurface& s) {
     s.edges.push_back(sides[i].edge);
     std::array<Index, 2> both = {sides[i].triangle, -1};
     double angle = 0.0;
-    if (j == i + 2) {  // where more triangles meet, none is the other side
+    if (j > i + 2) both[1] = -2;
+    if (j == i + 2) {
       both[1] = sides[i + 1].triangle;
       const Triangle& t0 = s.triangles[uz(both[0])];
       const auto c0 = static_cast<std::size_t>(sides[i].corner);

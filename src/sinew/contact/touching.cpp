@@ -46,28 +46,6 @@ NodeAndTriangle motion_of(Index p, Index a, Index b, Index c, const Moves& m) {
           m.to[uz(p)],   m.to[uz(a)],   m.to[uz(b)],   m.to[uz(c)]};
 }
 
-// A triangle in whose range a node is.
-struct Candidate {
-  Index triangle;
-  OnTriangle on;
-  double side;
-  Vec3 plane;
-};
-
-// Of the nearest candidates (several where the place is an edge or a corner) the one whose plane
-// the node is farthest from: on its side the node is of all of them (Baerentzen, Aanaes 2005, have
-// the case against the plane of any of them).
-const Candidate* pick(const std::vector<Candidate>& all) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Candidate& c : all) least = std::min(least, c.on.distance2);
-  const Candidate* best = nullptr;
-  for (const Candidate& c : all) {
-    if (!(c.on.distance2 <= least * (1.0 + 1e-7) + 1e-30)) continue;
-    if (!best || std::abs(c.side) > std::abs(best->side) * (1.0 + 1e-9)) best = &c;
-  }
-  return best;
-}
-
 }  // namespace
 
 Touching::Touching(const Model& model)
@@ -80,15 +58,18 @@ Touching::Touching(const Model& model)
   open_.resize(surface_.triangles.size());
   for (Index o = 0; o < surface_.owner_count(); ++o) {
     double largest = 0.0;
+    double smallest = std::numeric_limits<double>::infinity();
     const Range r = surface_.owner_triangles[uz(o)];
     for (Index t = r.begin; t < r.end; ++t) {
       triangle_owner_[uz(t)] = o;
       largest = std::max(largest, surface_.triangle_size[uz(t)]);
+      smallest = std::min(smallest, surface_.triangle_size[uz(t)]);
     }
     largest_size_.push_back(largest);
+    smallest_size_.push_back(smallest);
   }
   for (std::size_t e = 0; e < surface_.edges.size(); ++e) {
-    if (surface_.edge_triangles[e][1] >= 0) continue;
+    if (surface_.edge_triangles[e][1] != -1) continue;
     const Index t = surface_.edge_triangles[e][0];
     for (std::size_t c = 0; c < 3; ++c) {
       const Index i = surface_.triangles[uz(t)][c];
@@ -120,16 +101,7 @@ double Touching::rest_distance(Index node, const Triangle& t) const {
 }
 
 double Touching::rest_distance(const Edge& a, const Edge& b) const {
-  const Vec3 &a0 = rest_[uz(a[0])], &a1 = rest_[uz(a[1])];
-  const Vec3 &b0 = rest_[uz(b[0])], &b1 = rest_[uz(b[1])];
-  const auto to_segment = [](const Vec3& p, const Vec3& c, const Vec3& d) {
-    return (p - c - nearest_on_segment(p, c, d) * (d - c)).norm();
-  };
-  const double ends = std::min(std::min(to_segment(a0, b0, b1), to_segment(a1, b0, b1)),
-                               std::min(to_segment(b0, a0, a1), to_segment(b1, a0, a1)));
-  const OnLines on = nearest_on_lines(a0, a1, b0, b1);
-  if (on.parallel || on.s < 0.0 || on.s > 1.0 || on.t < 0.0 || on.t > 1.0) return ends;
-  return std::min(ends, (a0 + on.s * (a1 - a0) - b0 - on.t * (b1 - b0)).norm());
+  return segments_distance(rest_[uz(a[0])], rest_[uz(a[1])], rest_[uz(b[0])], rest_[uz(b[1])]);
 }
 
 Vec3 Touching::node_normal(Index slot, const std::vector<Vec3>& x) const {
@@ -151,6 +123,29 @@ bool Touching::on_boundary(Index t, const OnTriangle& on) const {
   return false;
 }
 
+// The two sides of a slit: at rest they face each other over a gap, not over material.
+bool Touching::slit(Index slot, Index t, double apart) const {
+  const Triangle& tri = surface_.triangles[uz(t)];
+  const Vec3 n = unit(area_normal(rest_, tri));
+  const double front = n.dot(rest_[uz(surface_.nodes[uz(slot)])] - rest_[uz(tri[0])]);
+  return front > 0.5 * apart && node_normal(slot, rest_).dot(n) < -0.5;
+}
+
+bool Touching::node_apart(Index slot, Index t, double distance) const {
+  const Index node = surface_.nodes[uz(slot)];
+  if (holds(surface_.triangles[uz(t)], node)) return true;
+  const double apart = rest_distance(node, surface_.triangles[uz(t)]);
+  return distance >= self_share * apart && !slit(slot, t, apart);
+}
+
+bool Touching::edges_apart(Index a, Index b, double distance) const {
+  return distance >= self_share * rest_distance(surface_.edges[uz(a)], surface_.edges[uz(b)]);
+}
+
+double Touching::calm_motion(Index a, Index b) const {
+  return calm_share * std::min(smallest_size_[uz(a)], smallest_size_[uz(b)]);
+}
+
 // Whether a node and a triangle of one body, now near each other, have come together from
 // elsewhere, rather than being neighbours, or opposite sides of the same piece of material.
 bool Touching::self_pair_counts(Index slot, Index t, const OnTriangle& on, double side,
@@ -158,21 +153,29 @@ bool Touching::self_pair_counts(Index slot, Index t, const OnTriangle& on, doubl
   const Index node = surface_.nodes[uz(slot)];
   const Triangle& tri = surface_.triangles[uz(t)];
   const double apart = rest_distance(node, tri);
-  const double distance = std::sqrt(on.distance2);
-  if (distance < self_share * apart) {
-    if (side >= 0.0) return true;
-    // Through the material at rest: only if it has come from the front.
-    const Vec3 n = area_normal(rest_, tri);
-    const double behind = unit(n).dot(rest_[uz(node)] - rest_[uz(tri[0])]);
-    if (!(behind < 0.0 && node_normal(slot, rest_).dot(n) < 0.0)) return true;
-    const Vec3 now = unit(area_normal(from, tri));
-    return now.dot(from[uz(node)] - from[uz(tri[0])]) > -0.2 * self_share * apart;
+  if (!(std::sqrt(on.distance2) < self_share * apart)) return side < 0.0 && slit(slot, t, apart);
+  if (side >= 0.0) return true;
+  // Behind it at rest, through the material: only if it has come from the front.
+  const Vec3 n = area_normal(rest_, tri);
+  const double behind = n.dot(rest_[uz(node)] - rest_[uz(tri[0])]);
+  if (!(behind < 0.0 && node_normal(slot, rest_).dot(n) < 0.0)) return true;
+  const Vec3 now = unit(area_normal(from, tri));
+  return now.dot(from[uz(node)] - from[uz(tri[0])]) > -0.2 * self_share * apart;
+}
+
+// Keeps the nearer of two. Where both are at one place, an edge or a corner, that whose plane the
+// node is farther from: on its side the node is of the surface (on a plane's side alone it need not
+// be; Baerentzen and Aanaes 2005 take a mean of the planes for this).
+void Touching::Near::take(const Near& other) {
+  constexpr double same = 1e-7;
+  if (triangle >= 0) {
+    if (other.on.distance2 > on.distance2 * (1.0 + same) + 1e-30) return;
+    if (other.on.distance2 >= on.distance2 * (1.0 - same) - 1e-30 &&
+        !(std::abs(other.side) > std::abs(side) * (1.0 + 1e-9))) {
+      return;
+    }
   }
-  if (side >= 0.0) return false;
-  // The two sides of a slit, which at rest face each other over a gap, not over material.
-  const Vec3 n = unit(area_normal(rest_, tri));
-  const double front = n.dot(rest_[uz(node)] - rest_[uz(tri[0])]);
-  return front > 0.5 * apart && node_normal(slot, rest_).dot(n) < -0.5;
+  *this = other;
 }
 
 Touching::Nearest Touching::nearest(Index slot, bool self, std::span<const Index> triangles,
@@ -180,30 +183,25 @@ Touching::Nearest Touching::nearest(Index slot, bool self, std::span<const Index
                                     double range) const {
   const Index node = surface_.nodes[uz(slot)];
   const Vec3& p = x[uz(node)];
-  std::vector<Candidate> all;
+  Vec3 normal = Vec3::Zero();
+  bool known = false;
+  Nearest result;
   for (const Index t : triangles) {
     const Triangle& tri = surface_.triangles[uz(t)];
     if (self && holds(tri, node)) continue;
-    const OnTriangle on = nearest_on(p, x, tri);
-    if (!(on.distance2 <= range * range)) continue;
-    const Vec3 plane = unit(area_normal(x, tri));
-    const double side = plane.dot(p - on.point);
-    if (self && !self_pair_counts(slot, t, on, side, from)) continue;
-    all.push_back({t, on, side, plane});
+    Near near;
+    near.on = nearest_on(p, x, tri);
+    if (!(near.on.distance2 <= range * range)) continue;
+    near.triangle = t;
+    near.plane = unit(area_normal(x, tri));
+    near.side = near.plane.dot(p - near.on.point);
+    near.inside = near.side < 0.0 && !on_boundary(t, near.on);
+    if (self && !self_pair_counts(slot, t, near.on, near.side, from)) continue;
+    if (!known) normal = node_normal(slot, x);
+    known = true;
+    if (!self) result.any.take(near);
+    if (normal.dot(near.plane) < (self ? opposed_self : opposed)) result.fit.take(near);
   }
-  Nearest result;
-  if (all.empty()) return result;
-  const auto near_of = [&](const Candidate& c) {
-    Near n = {c.triangle, c.on, c.side, c.plane, false};
-    n.inside = c.side < 0.0 && !on_boundary(c.triangle, c.on);
-    return n;
-  };
-  if (!self) result.any = near_of(*pick(all));
-  const Vec3 normal = node_normal(slot, x);
-  const double limit = self ? opposed_self : opposed;
-  std::erase_if(all, [&](const Candidate& c) { return !(normal.dot(c.plane) < limit); });
-  if (all.empty()) return result;
-  result.fit = near_of(*pick(all));
   if (self) result.any = result.fit;
   return result;
 }
@@ -213,7 +211,7 @@ bool Touching::node_contact_of(Index slot, const Near& near, double range, const
                                Contact& c) const {
   const Triangle& tri = surface_.triangles[uz(near.triangle)];
   const Vec3 r = moves.to[uz(surface_.nodes[uz(slot)])] - near.on.point;
-  const double distance = std::sqrt(near.on.distance2);
+  const double distance = near.distance();
   const bool face = near.on.weight[0] > 0.0 && near.on.weight[1] > 0.0 && near.on.weight[2] > 0.0;
   c.normal = near.plane;
   if (!face && !near.inside && distance > 1e-6 * range) c.normal = r / distance;
@@ -226,10 +224,10 @@ bool Touching::node_contact_of(Index slot, const Near& near, double range, const
   return true;
 }
 
-bool Touching::node_touches(Index slot, Index owner, std::span<const Index> triangles,
+bool Touching::node_touches(Index slot, Index owner, std::span<const Index> triangles, bool calm,
                             const Moves& moves, Contact& c) const {
   const Index node = surface_.nodes[uz(slot)];
-  const bool self = triangles.empty() ? false : surface_.owner_nodes[uz(owner)].contains(slot);
+  const bool self = surface_.owner_nodes[uz(owner)].contains(slot);
   const double range = node_range(slot, owner, moves.reach);
   const Nearest end = nearest(slot, self, triangles, moves.to, moves.from, range);
 
@@ -243,21 +241,20 @@ bool Touching::node_touches(Index slot, Index owner, std::span<const Index> tria
   // On the way.
   Meeting hit;
   Index hit_triangle = -1;
-  bool calm = true;
-  for (const Index t : triangles) {
-    const double size = std::min(surface_.node_size[uz(slot)], surface_.triangle_size[uz(t)]);
-    calm = calm && relative_motion(node, surface_.triangles[uz(t)], moves) <= calm_share * size;
-  }
+  const auto fast = [&](Index t) {
+    return relative_motion(node, surface_.triangles[uz(t)], moves) >
+           calm_share * std::min(surface_.node_size[uz(slot)], surface_.triangle_size[uz(t)]);
+  };
   if (!calm) {
     const Nearest start = nearest(slot, self, triangles, moves.from, moves.from, range);
-    if (start.any.inside && start.fit.triangle >= 0 && start.fit.inside &&
-        std::sqrt(start.fit.on.distance2) <= pair_depth(slot, start.fit.triangle)) {
+    if (start.any.inside && start.fit.inside && fast(start.fit.triangle) &&
+        start.fit.distance() <= pair_depth(slot, start.fit.triangle)) {
       hit = {true, 0.0, start.fit.on.weight, start.fit.plane};
       hit_triangle = start.fit.triangle;
     } else {
       for (const Index t : triangles) {
         const Triangle& tri = surface_.triangles[uz(t)];
-        if (self && (holds(tri, node) || rest_distance(node, tri) == 0.0)) continue;
+        if (!fast(t) || (self && (holds(tri, node) || rest_distance(node, tri) == 0.0))) continue;
         const Meeting m = node_meets_triangle(motion_of(node, tri[0], tri[1], tri[2], moves));
         if (!m.met || (hit.met && hit.moment <= m.moment)) continue;
         hit = m;
@@ -268,9 +265,9 @@ bool Touching::node_touches(Index slot, Index owner, std::span<const Index> tria
 
   // At the end.
   const bool deep = end.any.inside && end.fit.inside &&
-                    std::sqrt(end.fit.on.distance2) <= pair_depth(slot, end.fit.triangle);
+                    end.fit.distance() <= pair_depth(slot, end.fit.triangle);
   const bool close = !end.any.inside && end.fit.triangle >= 0 && !end.fit.inside &&
-                     std::sqrt(end.fit.on.distance2) < moves.reach;
+                     end.fit.distance() < moves.reach;
   const auto finish = [&](Index t) {
     c.gap = contact_gap(c, moves.to);
     c.key = (static_cast<std::uint64_t>(slot) << 31) | static_cast<std::uint64_t>(t);
@@ -323,7 +320,7 @@ bool Touching::supports(Index edge, const Vec3& n, const Moves& m, double moment
   return n.dot(out) > 0.0;
 }
 
-bool Touching::edges_touch(Index ea, Index eb, const Moves& moves, Contact& c) const {
+bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Contact& c) const {
   const Edge &a = surface_.edges[uz(ea)], &b = surface_.edges[uz(eb)];
   if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) return false;
   const double size = std::min(edge_size(ea), edge_size(eb));
@@ -359,6 +356,7 @@ bool Touching::edges_touch(Index ea, Index eb, const Moves& moves, Contact& c) c
   }
 
   // On the way.
+  if (calm) return false;
   const auto move = [&](Index i) -> Vec3 { return moves.to[uz(i)] - moves.from[uz(i)]; };
   double motion = 0.0;
   for (const Index i : a) {

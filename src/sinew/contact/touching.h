@@ -43,17 +43,24 @@ class Touching {
 
   // The contact of a node with an owner's surface, of which `triangles` (rising) holds at least
   // those within node_range at either end of the step and those that it may meet on the way. The
-  // node may belong to that owner. False: none.
-  bool node_touches(Index node_slot, Index owner, std::span<const Index> triangles,
+  // node may belong to that owner. `calm`: no pair of them moves far enough to be followed on the
+  // way. False: none.
+  bool node_touches(Index node_slot, Index owner, std::span<const Index> triangles, bool calm,
                     const Moves& moves, Contact& contact) const;
 
   // The contact of edge a with edge b, what is touched. False: none.
-  bool edges_touch(Index a, Index b, const Moves& moves, Contact& contact) const;
+  bool edges_touch(Index a, Index b, bool calm, const Moves& moves, Contact& contact) const;
+
+  // Whether a node and a triangle, or two edges, of one body that are this far apart [m] or more
+  // cannot be near enough to touch.
+  bool node_apart(Index node_slot, Index triangle, double distance) const;
+  bool edges_apart(Index a, Index b, double distance) const;
+
+  // Relative motion [m] up to which no pair of two owners is followed on the way.
+  double calm_motion(Index a, Index b) const;
 
   const TouchSurface& surface() const { return surface_; }
   Index owner_of_triangle(Index t) const { return triangle_owner_[uz(t)]; }
-  double largest_size(Index owner) const { return largest_size_[uz(owner)]; }
-
   // The distance of a node from a triangle, of two edges, in the rest shape [m].
   double rest_distance(Index node, const Triangle& t) const;
   double rest_distance(const Edge& a, const Edge& b) const;
@@ -62,9 +69,11 @@ class Touching {
   struct Near {
     Index triangle = -1;
     OnTriangle on;
-    double side = 0.0;  // of the triangle's plane: > 0 in front [m]
-    Vec3 plane = Vec3::Zero();
+    double side = 0.0;          // of the triangle's plane: > 0 in front [m]
+    Vec3 plane = Vec3::Zero();  // its normal, a unit vector
     bool inside = false;
+    double distance() const { return std::sqrt(on.distance2); }
+    void take(const Near& other);
   };
   // The nearest triangle of a set, and of those that may hold the node.
   struct Nearest {
@@ -74,6 +83,7 @@ class Touching {
   Vec3 node_normal(Index slot, const std::vector<Vec3>& x) const;
   Nearest nearest(Index slot, bool self, std::span<const Index> triangles,
                   const std::vector<Vec3>& x, const std::vector<Vec3>& from, double range) const;
+  bool slit(Index slot, Index t, double apart) const;
   bool self_pair_counts(Index slot, Index t, const OnTriangle& on, double side,
                         const std::vector<Vec3>& from) const;
   bool on_boundary(Index t, const OnTriangle& on) const;
@@ -89,6 +99,7 @@ class Touching {
   std::vector<Vec3> rest_;                 // [m] (nodes of the model)
   std::vector<Index> triangle_owner_;      // (triangles)
   std::vector<double> largest_size_;       // of its triangles [m] (owners)
+  std::vector<double> smallest_size_;      // [m] (owners)
   std::vector<std::array<char, 3>> open_;  // 1: no triangle beyond the edge opposite (triangles)
   std::vector<char> rim_;                  // 1: on such an edge (nodes of the model)
   double friction_ = 0.0;

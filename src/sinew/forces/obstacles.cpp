@@ -18,8 +18,9 @@ void for_each_surface_node(const Model& model, const F& f) {
 }  // namespace
 
 void add_obstacle(Model& model, Obstacle obstacle) {
+  const bool hard = obstacle.hard();
   model.obstacles.push_back(std::move(obstacle));
-  if (!model.surface_share.empty()) return;
+  if (hard || !model.surface_share.empty()) return;
   model.surface_share.assign(uz(model.body_node_count()), 0.0);
   for (const Triangle& t : build_surface(model.tets, model.body_node_count()).triangles) {
     const double third = area_vector(model.rest_position, t).norm() / 3.0;
@@ -92,7 +93,7 @@ std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const 
     reading.name = o.name;
     reading.center = o.path.at(time, o.center);
     for (std::size_t n = 0; n < model.surface_share.size(); ++n) {
-      if (model.surface_share[n] == 0.0 || model.inverse_mass[n] == 0.0) continue;
+      if (o.hard() || model.surface_share[n] == 0.0 || model.inverse_mass[n] == 0.0) continue;
       const Vec3 r = x[n] - reading.center;
       const double depth = o.radius - r.norm();
       if (depth <= 0.0) continue;

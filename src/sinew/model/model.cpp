@@ -104,6 +104,13 @@ std::uint64_t Model::hash() const {
     h.value(o.radius);
     h.value(o.stiffness);
     hash_path(h, o.path);
+    h.value(static_cast<int>(o.shape));
+    for (const double r : o.rotation.reshaped()) h.value(r);
+    hash_vec(h, o.half);
+    h.value(o.friction);
+    h.value(o.restitution);
+    h.value(o.nodes.begin);
+    h.array(o.triangles);
   }
   for (const Tether& t : tethers) {
     h.array(t.nodes);
@@ -119,6 +126,10 @@ std::string Model::node_name(Index node) const {
     if (b.nodes.contains(node)) {
       return fmt::format("body {}, node {}", b.name, node - b.nodes.begin);
     }
+  }
+  for (const Obstacle& o : obstacles) {
+    if (o.nodes.contains(node))
+      return fmt::format("obstacle {}, vertex {}", o.name, node - o.nodes.begin);
   }
   return fmt::format("anchor {}", node - body_node_count());
 }

@@ -9,6 +9,7 @@
 
 #include "sinew/base/vec.h"
 #include "sinew/model/material.h"
+#include "sinew/model/obstacle.h"
 #include "sinew/model/path.h"
 #include "sinew/model/touch_surface.h"
 
@@ -55,15 +56,6 @@ struct Ground {
   double friction = 0.5;        // [-] Coulomb's mu >= 0
 };
 
-// A rigid, frictionless sphere that presses on the bodies (forces/obstacles.h).
-struct Obstacle {
-  std::string name;
-  Vec3 center = Vec3::Zero();  // [m], before its path moves it
-  double radius = 0.0;         // [m] > 0
-  double stiffness = 0.0;      // [N/m3] > 0: pressure per depth
-  Path path = {};              // moves the centre
-};
-
 // Bodies that may not enter each other, or themselves (contact/). docs/methods/contact.md.
 struct Touch {
   bool bodies = true;        // bodies against bodies
@@ -79,6 +71,15 @@ struct Tether {
   std::vector<double> stiffness;  // [N/m] (nodes)
   std::vector<Vec3> offset;       // of each node's target from `target` [m] (nodes)
   Vec3 target = Vec3::Zero();     // [m]
+};
+
+// The surface of the bodies, body by body: what hard obstacles touch.
+struct Skin {
+  std::vector<Index> nodes;           // node ids, rising
+  std::vector<Triangle> triangles;    // node ids, counter-clockwise seen from outside
+  std::vector<Range> body_nodes;      // into nodes (bodies)
+  std::vector<Range> body_triangles;  // into triangles (bodies)
+  std::vector<double> longest_edge;   // of the surface at rest [m] (bodies)
 };
 
 // A named selection whose mean is reported each frame.
@@ -166,7 +167,8 @@ struct Model {
   std::vector<Tether> tethers;        // the one thing that may change during a run, beside gravity:
                                       // between steps, by who owns the Model
   std::vector<double> surface_share;  // a third of the rest area of its surface triangles [m2]
-                                      // (nodes of bodies); empty where there are no obstacles
+                                      // (nodes of bodies); empty where there are no soft obstacles
+  Skin skin;                          // empty where there are no hard obstacles
   TouchSurface surface;               // what may touch; empty where nothing does
 
   Index node_count() const { return static_cast<Index>(rest_position.size()); }

@@ -23,6 +23,12 @@ struct Path {
   // each of the three linear between keys. Before the first key and after the last the motion
   // stands still at that key; a first key later than 0 is approached from rest at time 0.
   Vec3 at(double t, const Vec3& X) const;
+
+  // R(turn) at time t.
+  Mat3 rotation(double t) const;
+
+ private:
+  KeyFrame frame(double t) const;
 };
 
 }  // namespace sinew

@@ -20,7 +20,8 @@ struct TouchSurface {
   std::vector<double> triangle_size;  // mean edge, or the height of the tet behind it where that is
                                       // less [m] (triangles)
   std::vector<Edge> edges;            // node ids (edges), owner by owner
-  std::vector<std::array<Index, 2>> edge_triangles;  // on both sides (edges); -1: none there
+  std::vector<std::array<Index, 2>> edge_triangles;  // on both sides (edges); second -1: none
+                                                     // there; -2: more than one
   std::vector<double> edge_bend;       // [rad] (edges) between the triangles' normals: > 0 convex,
                                        // 0 where there are not two triangles
   std::vector<Range> owner_nodes;      // ranges of `nodes` (owners)

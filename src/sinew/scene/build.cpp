@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "sinew/contact/colliders.h"
 #include "sinew/contact/touch_surface.h"
 #include "sinew/forces/assemble.h"
 #include "sinew/forces/laws.h"
@@ -160,6 +161,26 @@ double default_obstacle_stiffness(const std::vector<PlacedBody>& bodies, double 
   return 200.0 * modulus / length;
 }
 
+Obstacle obstacle_of(const SceneObstacle& o) {
+  Obstacle out;
+  out.name = o.name;
+  out.center = o.center;
+  out.radius = o.radius;
+  out.path = o.path;
+  if (!o.pivot_given) out.path.pivot = o.center;
+  out.rotation = o.rotation.toRotationMatrix();
+  out.friction = o.friction;
+  out.restitution = o.restitution;
+  out.shape = o.shape == "plane"     ? ObstacleShape::plane
+              : o.shape == "capsule" ? ObstacleShape::capsule
+              : o.shape == "box"     ? ObstacleShape::box
+              : o.shape == "mesh"    ? ObstacleShape::mesh
+                                     : ObstacleShape::sphere;
+  if (o.shape == "box") out.half = 0.5 * o.size;
+  if (o.shape == "capsule") out.half.z() = 0.5 * o.length;
+  return out;
+}
+
 class Parts {
  public:
   Parts(const Scene& scene, const std::vector<PlacedBody>& bodies, Model& model)
@@ -249,10 +270,11 @@ class Parts {
   }
 
   void add_obstacle_of(const SceneObstacle& o) {
-    Obstacle obstacle{o.name, o.center, o.radius,
-                      o.stiffness.value_or(default_obstacle_stiffness(bodies_, o.radius)), o.path};
-    if (!o.pivot_given) obstacle.path.pivot = o.center;
+    Obstacle obstacle = obstacle_of(o);
+    if (o.soft)
+      obstacle.stiffness = o.stiffness.value_or(default_obstacle_stiffness(bodies_, o.radius));
     add_obstacle(model_, std::move(obstacle));
+    if (!o.soft) return build_skin(model_);
     for (Index i = 0; i < model_.body_node_count(); ++i)
       if (!std::isfinite(largest_obstacle_stiffness(model_, i)))
         throw Error(ErrorKind::input,

@@ -197,9 +197,20 @@ KeyTables make_tables() {
   t.obstacle = {"obstacle",
                 "[obstacle.NAME]",
                 {
+                    word("shape", "\"sphere\"", "sphere plane capsule box mesh"),
                     point("center", "m"),
                     number("radius", "m", "", positive),
-                    number("stiffness", "N/m3", "the stiffest body's", positive),
+                    number("length", "m", "", positive),
+                    point("axis", ""),
+                    point("size", "m", "", positive),
+                    point("normal", ""),
+                    text("mesh"),
+                    number("scale", "m", "1", positive),
+                    boolean("flip", "false"),
+                    other("rotation", T::rotation, "degrees", "[0, 0, 0]"),
+                    number("friction", "", "0.5", not_negative),
+                    number("restitution", "", "0", from_to(0, 1)),
+                    {"stiffness", T::number_or_word, "N/m3", "", positive, "soft"},
                 }};
   t.ground = {"ground",
               "[ground]",
@@ -255,8 +266,9 @@ const Key* KeyTable::find(std::string_view key) const {
 }
 
 std::vector<const KeyTable*> KeyTables::all() const {
-  return {&scene,      &body, &material,   &region, &motion, &key_frame, &select, &box,   &sphere,
-          &half_space, &pin,  &attachment, &force,  &probe,  &obstacle,  &ground, &contact, &output};
+  return {&scene,  &body,  &material, &region,     &motion,  &key_frame,
+          &select, &box,   &sphere,   &half_space, &pin,     &attachment,
+          &force,  &probe, &obstacle, &ground,     &contact, &output};
 }
 
 const KeyTables& key_tables() {

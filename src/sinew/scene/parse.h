@@ -35,5 +35,7 @@ Material parse_material(const Reader& reader, const Material& base);
 std::string parse_body_name(const Reader& reader, std::string_view key, const BodyNames& bodies);
 // A point that must not be 0, as a unit vector; `otherwise` where the key is absent.
 Vec3 parse_direction(const Reader& reader, std::string_view key, const Vec3& otherwise);
+// The key rotation: degrees about the fixed axes x, then y, then z; or a quaternion w, x, y, z.
+Eigen::Quaterniond parse_rotation(const Reader& reader);
 
 }  // namespace sinew

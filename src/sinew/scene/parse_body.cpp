@@ -76,25 +76,6 @@ void parse_source(const Reader& reader, SceneBody& body) {
   refuse_shape_keys_that_do_not_fit(reader, body);
 }
 
-// Degrees about the fixed axes x, then y, then z; or a quaternion w, x, y, z.
-Eigen::Quaterniond parse_rotation(const Reader& reader) {
-  const std::vector<double> r = reader.numbers("rotation");
-  if (r.size() == 3)
-    return Eigen::Quaterniond(Eigen::AngleAxisd(r[2] * radians, Vec3::UnitZ()) *
-                              Eigen::AngleAxisd(r[1] * radians, Vec3::UnitY()) *
-                              Eigen::AngleAxisd(r[0] * radians, Vec3::UnitX()));
-  if (r.size() == 4) {
-    const double largest = Eigen::Vector4d(r[0], r[1], r[2], r[3]).cwiseAbs().maxCoeff();
-    if (largest == 0.0)
-      reader.fail("rotation",
-                  fmt::format("{} is a quaternion of length 0", reader.called("rotation")),
-                  "no rotation is [1, 0, 0, 0]");
-    return Eigen::Quaterniond(r[0] / largest, r[1] / largest, r[2] / largest, r[3] / largest)
-        .normalized();
-  }
-  return Eigen::Quaterniond::Identity();
-}
-
 SceneRegion parse_region(const DocEntry& entry, const std::string& body, const Material& base) {
   const Reader reader(entry.value, fmt::format("[body.{}.region.{}]", body, entry.key),
                       {&key_tables().region, &key_tables().material});
@@ -143,6 +124,24 @@ void parse_tissue(const Reader& reader, Material& m) {
 }
 
 }  // namespace
+
+Eigen::Quaterniond parse_rotation(const Reader& reader) {
+  const std::vector<double> r = reader.numbers("rotation");
+  if (r.size() == 3)
+    return Eigen::Quaterniond(Eigen::AngleAxisd(r[2] * radians, Vec3::UnitZ()) *
+                              Eigen::AngleAxisd(r[1] * radians, Vec3::UnitY()) *
+                              Eigen::AngleAxisd(r[0] * radians, Vec3::UnitX()));
+  if (r.size() == 4) {
+    const double largest = Eigen::Vector4d(r[0], r[1], r[2], r[3]).cwiseAbs().maxCoeff();
+    if (largest == 0.0)
+      reader.fail("rotation",
+                  fmt::format("{} is a quaternion of length 0", reader.called("rotation")),
+                  "no rotation is [1, 0, 0, 0]");
+    return Eigen::Quaterniond(r[0] / largest, r[1] / largest, r[2] / largest, r[3] / largest)
+        .normalized();
+  }
+  return Eigen::Quaterniond::Identity();
+}
 
 Material parse_material(const Reader& reader, const Material& base) {
   Material m = base;

@@ -110,21 +110,6 @@ SceneProbe parse_probe(const std::string& name, const DocValue& value, const Bod
   return probe;
 }
 
-SceneObstacle parse_obstacle(const std::string& name, const DocValue& value) {
-  const Reader reader(value, fmt::format("[obstacle.{}]", name),
-                      {&key_tables().obstacle, &key_tables().motion});
-  require(reader, "center");
-  require(reader, "radius");
-  SceneObstacle obstacle;
-  obstacle.name = name;
-  obstacle.where = reader.where();
-  reader.point("center", obstacle.center);
-  reader.number("radius", obstacle.radius);
-  reader.number("stiffness", obstacle.stiffness);
-  obstacle.path = parse_motion(reader, obstacle.pivot_given);
-  return obstacle;
-}
-
 SceneGround parse_ground(const DocValue& value) {
   const Reader reader(value, "[ground]", {&key_tables().ground});
   SceneGround ground;

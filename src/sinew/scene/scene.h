@@ -127,12 +127,23 @@ struct SceneProbe {
 
 struct SceneObstacle {
   std::string name;
-  Vec3 center = Vec3::Zero();       // [m]
-  double radius = 0.0;              // [m]
-  std::optional<double> stiffness;  // [N/m3]; absent: from the bodies
+  std::string shape = "sphere";  // sphere, plane, capsule, box, mesh
+  Vec3 center = Vec3::Zero();    // [m]
+  double radius = 0.0;           // sphere, capsule [m]
+  double length = 0.0;           // capsule, without its round ends [m]
+  Vec3 size = Vec3::Zero();      // box [m]
+  std::string mesh;              // mesh: path, relative to the scene file
+  double scale = 1.0;            // mesh: metres per unit of the file
+  bool flip = false;             // mesh: turn the triangles' outside in
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // or from normal, axis
+  bool soft = false;                // has a stiffness: presses instead of being hard
+  std::optional<double> stiffness;  // soft [N/m3]; absent: from the bodies
+  double friction = 0.5;            // hard
+  double restitution = 0.0;         // hard
   Path path;                        // of the centre
   bool pivot_given = false;         // else the centre
   Location where;
+  Location mesh_where;
 };
 
 struct SceneGround {

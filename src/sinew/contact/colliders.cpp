@@ -1,0 +1,303 @@
+#include "sinew/contact/colliders.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "sinew/base/parallel.h"
+#include "sinew/contact/rods.h"
+#include "sinew/contact/shapes.h"
+#include "sinew/mesh/surface.h"
+
+namespace sinew {
+namespace {
+
+using Box = Eigen::AlignedBox3d;
+
+// ---- the shape of an obstacle, in its own frame ----
+
+SurfacePoint surface_of(const Obstacle& o, const Vec3& q) {
+  switch (o.shape) {
+    case ObstacleShape::plane:
+      return plane_surface(q);
+    case ObstacleShape::capsule:
+      return capsule_surface(q, o.half.z(), o.radius);
+    case ObstacleShape::box:
+      return box_surface(q, o.half);
+    default:
+      return sphere_surface(q, o.radius);
+  }
+}
+
+std::optional<double> enters(const Obstacle& o, const Vec3& q0, const Vec3& q1) {
+  switch (o.shape) {
+    case ObstacleShape::plane:
+      return enters_plane(q0, q1);
+    case ObstacleShape::capsule:
+      return enters_capsule(q0, q1, o.half.z(), o.radius);
+    case ObstacleShape::box:
+      return enters_box(q0, q1, o.half);
+    default:
+      return enters_sphere(q0, q1, o.radius);
+  }
+}
+
+// Its half sides along the world's axes.
+Vec3 extent(const Obstacle& o, const Mat3& turn) {
+  const Mat3 m = turn.cwiseAbs();
+  switch (o.shape) {
+    case ObstacleShape::capsule:
+      return m.col(2) * o.half.z() + Vec3::Constant(o.radius);
+    case ObstacleShape::box:
+      return m * o.half;
+    default:
+      return Vec3::Constant(o.radius);
+  }
+}
+
+double farthest(const Obstacle& o) {
+  return o.shape == ObstacleShape::box ? o.half.norm() : o.radius + o.half.z();
+}
+
+// A hard obstacle over a step.
+struct Moving {
+  const Obstacle* obstacle = nullptr;
+  Index index = -1;
+  Pose before, after;
+  Box box;  // around its whole way, with the reach; not of a plane
+};
+
+Moving moving(const Obstacle& o, Index index, double t0, double t1, double reach) {
+  Moving m{&o, index, obstacle_pose(o, t0), obstacle_pose(o, t1), {}};
+  const bool turns = !m.before.turn.isApprox(m.after.turn, 0.0);
+  for (const Pose* pose : {&m.before, &m.after}) {
+    // What turns may stand out in between by the arrow of an arc: its whole ball is enough.
+    const Vec3 half = turns ? Vec3::Constant(farthest(o)) : extent(o, pose->turn);
+    m.box.extend(pose->center - half - Vec3::Constant(reach));
+    m.box.extend(pose->center + half + Vec3::Constant(reach));
+  }
+  return m;
+}
+
+// ---- nodes ----
+
+// The surface that a node going from q0 to q1 (own frame) has to stay outside of, or none: the
+// nearest at q1 if that is on the side that it came from, else where it came in.
+std::optional<SurfacePoint> wall_for(const Obstacle& o, const Vec3& q0, const Vec3& q1,
+                                     double reach) {
+  const SurfacePoint last = surface_of(o, q1);
+  const bool within = last.distance < reach;
+  if (!within && last.distance > (q1 - q0).norm()) return {};
+
+  const SurfacePoint first = surface_of(o, q0);
+  const bool through = last.distance >= 0.0;  // if it was inside at all, it has come out again
+  std::optional<SurfacePoint> side;
+  if (first.distance <= 0.0) {
+    if (!through || first.normal.dot(last.normal) < 0.0) side = first;
+  } else if (const auto s = enters(o, q0, q1)) {
+    side = surface_of(o, q0 + *s * (q1 - q0));
+  }
+  if (!side) return within ? std::optional(last) : std::nullopt;
+  const bool agree = side->normal.dot(last.normal) > 0.5 ||
+                     (!through && last.normal.dot(q0 - last.nearest) >= 0.0);
+  return within && agree ? last : *side;
+}
+
+// When the gap to a wall became 0, of gaps at the start and at the end.
+double moment_of(double before, double after) {
+  if (after >= 0.0) return 1.0;
+  return before <= 0.0 ? 0.0 : before / (before - after);
+}
+
+std::uint64_t key_of(Index obstacle, int part, std::uint64_t what) {
+  return (std::uint64_t{1} << 63) | (static_cast<std::uint64_t>(obstacle) << 44) |
+         (static_cast<std::uint64_t>(part) << 36) | what;
+}
+
+void add_node(const Moving& m, Index node, const std::vector<Vec3>& from,
+              const std::vector<Vec3>& to, double reach, std::vector<Contact>& out) {
+  const Vec3 q0 = m.before.own(from[uz(node)]);
+  const Vec3 q1 = m.after.own(to[uz(node)]);
+  const auto wall = wall_for(*m.obstacle, q0, q1, reach);
+  if (!wall) return;
+  Contact c;
+  c.node[0] = node;
+  c.weight[0] = 1.0;
+  c.count = 1;
+  c.normal = m.after.turn * wall->normal;
+  c.anchor = m.after.at(wall->nearest);
+  c.way = c.anchor - m.before.at(wall->nearest);
+  c.gap = contact_gap(c, to);
+  c.moment = moment_of(wall->normal.dot(q0 - wall->nearest), c.gap);
+  c.friction = m.obstacle->friction;
+  c.restitution = m.obstacle->restitution;
+  c.obstacle = m.index;
+  c.key = key_of(m.index, 0, static_cast<std::uint64_t>(node));
+  out.push_back(c);
+}
+
+// ---- triangles ----
+
+// Which sides of a box a node is beyond at both ends of its way: as bits. What three nodes share,
+// the triangle between them is beyond too, all the way.
+unsigned beyond(const Box& box, const Vec3& x0, const Vec3& x1) {
+  unsigned bits = 0;
+  for (int a = 0; a < 3; ++a) {
+    bits |= (x0[a] < box.min()[a] && x1[a] < box.min()[a]) ? 1U << (2 * a) : 0U;
+    bits |= (x0[a] > box.max()[a] && x1[a] > box.max()[a]) ? 2U << (2 * a) : 0U;
+  }
+  return bits;
+}
+
+void add_triangles(const Model& model, const Moving& m, std::size_t body,
+                   const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
+                   std::vector<Contact>& out) {
+  const std::vector<Rod> rods =
+      rods_of(*m.obstacle, m.before, m.after, model.skin.longest_edge[body]);
+  if (rods.empty()) return;
+  const Range nodes = model.bodies[body].nodes;
+  std::vector<unsigned char> outside(uz(nodes.size()));
+  const Range own = model.skin.body_nodes[body];
+  for (Index k = own.begin; k < own.end; ++k) {
+    const auto n = uz(model.skin.nodes[uz(k)]);
+    outside[n - uz(nodes.begin)] = static_cast<unsigned char>(beyond(m.box, from[n], to[n]));
+  }
+  std::vector<Index> near;
+  const Range triangles = model.skin.body_triangles[body];
+  for (Index t = triangles.begin; t < triangles.end; ++t) {
+    unsigned shared = ~0U;
+    double free = 0.0;
+    for (const Index node : model.skin.triangles[uz(t)]) {
+      shared &= outside[uz(node - nodes.begin)];
+      free += model.inverse_mass[uz(node)];
+    }
+    if (shared == 0 && free > 0.0) near.push_back(t);
+  }
+  if (near.empty()) return;
+  for (std::size_t r = 0; r < rods.size(); ++r) {
+    const std::size_t first = out.size();
+    add_rod_contacts(rods[r], model.skin.triangles, near, from, to, reach, out);
+    for (std::size_t i = first; i < out.size(); ++i) {
+      Contact& c = out[i];
+      const Vec3 place = m.after.own(c.anchor);
+      c.way = c.anchor - m.before.at(place);
+      double before = -c.normal.dot(c.anchor - c.way);
+      for (int a = 0; a < c.count; ++a)
+        before += c.weight[static_cast<std::size_t>(a)] *
+                  c.normal.dot(from[uz(c.node[static_cast<std::size_t>(a)])]);
+      c.moment = moment_of(before, c.gap);
+      c.friction = m.obstacle->friction;
+      c.restitution = m.obstacle->restitution;
+      c.obstacle = m.index;
+      c.key = key_of(m.index, static_cast<int>(r) + 1, c.key);
+    }
+  }
+}
+
+// Boxes around the ways of the bodies' surfaces.
+std::vector<Box> boxes_of_bodies(const Model& model, const std::vector<Vec3>& from,
+                                 const std::vector<Vec3>& to) {
+  std::vector<Box> boxes(model.bodies.size());
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    const Range own = model.skin.body_nodes[b];
+    Box& box = boxes[b];
+    for (Index k = own.begin; k < own.end; ++k) {
+      const auto n = uz(model.skin.nodes[uz(k)]);
+      box.extend(from[n]);
+      box.extend(to[n]);
+    }
+  }
+  return boxes;
+}
+
+// Whether some of the box may be within `reach` of the obstacle on the way.
+bool may_meet(const Moving& m, const Box& body, double reach) {
+  if (m.obstacle->shape != ObstacleShape::plane) return body.intersects(m.box);
+  for (const Pose* pose : {&m.before, &m.after}) {
+    const Vec3 n = pose->turn.col(1);
+    const Vec3 half = 0.5 * body.diagonal();
+    if (n.dot(body.center() - pose->center) - n.cwiseAbs().dot(half) < reach) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+void build_skin(Model& model) {
+  Skin& skin = model.skin;
+  if (!skin.triangles.empty()) return;
+  skin.triangles = build_surface(model.tets, model.body_node_count()).triangles;
+  std::vector<bool> on(uz(model.body_node_count()), false);
+  for (const Triangle& t : skin.triangles)
+    for (const Index node : t) on[uz(node)] = true;
+  std::size_t t = 0;
+  for (const Body& body : model.bodies) {
+    Range triangles{static_cast<Index>(t), 0};
+    double longest = 0.0;
+    for (; t < skin.triangles.size() && body.nodes.contains(skin.triangles[t][0]); ++t) {
+      const Triangle& f = skin.triangles[t];
+      for (std::size_t e = 0; e < 3; ++e) {
+        const Vec3& a = model.rest_position[uz(f[e])];
+        const Vec3& b = model.rest_position[uz(f[(e + 1) % 3])];
+        longest = std::max(longest, (b - a).norm());
+      }
+    }
+    triangles.end = static_cast<Index>(t);
+    Range nodes{static_cast<Index>(skin.nodes.size()), 0};
+    for (Index i = body.nodes.begin; i < body.nodes.end; ++i)
+      if (on[uz(i)]) skin.nodes.push_back(i);
+    nodes.end = static_cast<Index>(skin.nodes.size());
+    skin.body_nodes.push_back(nodes);
+    skin.body_triangles.push_back(triangles);
+    skin.longest_edge.push_back(longest);
+  }
+}
+
+void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
+                            const std::vector<Vec3>& to, double t0, double t1, double reach,
+                            std::vector<Contact>& out) {
+  out.clear();
+  std::vector<Moving> movers;
+  for (std::size_t o = 0; o < model.obstacles.size(); ++o) {
+    const Obstacle& obstacle = model.obstacles[o];
+    if (obstacle.hard() && obstacle.shape != ObstacleShape::mesh)
+      movers.push_back(moving(obstacle, static_cast<Index>(o), t0, t1, reach));
+  }
+  if (movers.empty()) return;
+  const std::vector<Box> boxes = boxes_of_bodies(model, from, to);
+  for (const Moving& m : movers) {
+    for (std::size_t b = 0; b < boxes.size(); ++b) {
+      if (!may_meet(m, boxes[b], reach)) continue;
+      const Range own = model.skin.body_nodes[b];
+      for (Index k = own.begin; k < own.end; ++k) {
+        const Index node = model.skin.nodes[uz(k)];
+        if (model.inverse_mass[uz(node)] == 0.0) continue;
+        if (m.obstacle->shape != ObstacleShape::plane &&
+            beyond(m.box, from[uz(node)], to[uz(node)]) != 0)
+          continue;
+        add_node(m, node, from, to, reach, out);
+      }
+      if (m.obstacle->shape != ObstacleShape::plane)
+        add_triangles(model, m, b, from, to, reach, out);
+    }
+  }
+  std::sort(out.begin(), out.end(),
+            [](const Contact& a, const Contact& b) { return a.key < b.key; });
+}
+
+ColliderReading read_collider(const Model& model, const Obstacle& obstacle,
+                              const std::vector<Vec3>& x, double time, double reach) {
+  ColliderReading reading;
+  if (obstacle.shape == ObstacleShape::mesh) return reading;
+  const Pose pose = obstacle_pose(obstacle, time);
+  for (const Index node : model.skin.nodes) {
+    if (model.inverse_mass[uz(node)] == 0.0) continue;
+    const double distance = surface_of(obstacle, pose.own(x[uz(node)])).distance;
+    if (distance < reach) ++reading.contacts;
+    reading.depth = std::max(reading.depth, -distance);
+  }
+  return reading;
+}
+
+}  // namespace sinew

@@ -1,0 +1,206 @@
+#include "sinew/contact/rods.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "sinew/contact/closest.h"
+
+namespace sinew {
+namespace {
+
+// Triangle and rod at a share of the step.
+struct Sweep {
+  Corners x0, x1;
+  const Rod& rod;
+
+  Corners corners(double s) const {
+    Corners c;
+    for (std::size_t i = 0; i < 3; ++i) c[i] = x0[i] + s * (x1[i] - x0[i]);
+    return c;
+  }
+  NearestPair nearest(double s) const {
+    return nearest_of_segment_and_triangle(rod.a0 + s * (rod.a1 - rod.a0),
+                                           rod.b0 + s * (rod.b1 - rod.b0), corners(s));
+  }
+  // The most that the distance can shrink over the step.
+  double way() const {
+    const Vec3 mean = 0.5 * (rod.a1 - rod.a0 + rod.b1 - rod.b0);
+    double of_triangle = 0.0;
+    for (std::size_t i = 0; i < 3; ++i)
+      of_triangle = std::max(of_triangle, (x1[i] - x0[i] - mean).norm());
+    return of_triangle + (rod.a1 - rod.a0 - mean).norm();
+  }
+  // The share of the step at which the distance is first down to the radius: conservative
+  // advancement, which never goes past it (Mirtich 1996).
+  std::optional<double> meets(double way) const {
+    double s = 0.0;
+    for (int i = 0; i < 200; ++i) {
+      const double space = nearest(s).distance - rod.radius;
+      if (space <= 1e-6 * rod.radius) return s;
+      s += space / way;
+      if (s > 1.0) return {};
+    }
+    return s;
+  }
+};
+
+// The rod's side of a pair: unit from the rod to the triangle; into the body where the rod is in
+// the surface itself.
+Vec3 pair_normal(const NearestPair& p, const Vec3& outward) {
+  return p.distance > 0.0 ? Vec3((p.on_triangle - p.on_segment) / p.distance) : Vec3(-outward);
+}
+
+Vec3 outward_of(const Corners& c) {
+  const Vec3 n = (c[1] - c[0]).cross(c[2] - c[0]);
+  const double length = n.norm();
+  return length > 0.0 ? Vec3(n / length) : Vec3(Vec3::Zero());
+}
+
+struct Hit {
+  NearestPair pair;
+  Vec3 normal = Vec3::UnitY();
+  double facing = 0.0;   // how much the triangle's outside looks at the rod, in [-1, 1]
+  bool crossed = false;  // met on the way: the pair is the one of that moment
+};
+
+std::optional<Hit> hit_of(const Sweep& sweep, double reach) {
+  const double radius = sweep.rod.radius;
+  const NearestPair last = sweep.nearest(1.0);
+  const double way = sweep.way();
+  if (last.distance - radius >= reach && last.distance - radius > way) return {};
+  const NearestPair first = sweep.nearest(0.0);
+  const Vec3 out0 = outward_of(sweep.x0);
+  const Vec3 out1 = outward_of(sweep.x1);
+  const Vec3 n0 = pair_normal(first, out0);
+  const Vec3 n1 = pair_normal(last, out1);
+  const bool may_cross = way >= first.distance;
+  const bool same_side = last.distance > 0.0 && n0.dot(n1) > 0.0;
+  if (!may_cross || same_side) {
+    if (last.distance - radius >= reach) return {};
+    return Hit{last, n1, -n1.dot(out1), false};
+  }
+  const auto moment = sweep.meets(way);
+  if (!moment) {
+    if (last.distance - radius >= reach) return {};
+    return Hit{last, n1, -n1.dot(out1), false};
+  }
+  const NearestPair met = sweep.nearest(*moment);
+  const Vec3 out = outward_of(sweep.corners(*moment));
+  const Vec3 n = pair_normal(met, out);
+  return Hit{met, n, -n.dot(out), true};
+}
+
+Contact contact_of(const Hit& hit, const Rod& rod, const Triangle& t, const std::vector<Vec3>& to) {
+  Contact c;
+  for (int i = 0; i < 3; ++i) {
+    if (hit.pair.weight[i] == 0.0) continue;
+    c.node[static_cast<std::size_t>(c.count)] = t[static_cast<std::size_t>(i)];
+    c.weight[static_cast<std::size_t>(c.count)] = hit.pair.weight[i];
+    ++c.count;
+  }
+  c.normal = hit.normal;
+  c.anchor = rod.a1 + hit.pair.share * (rod.b1 - rod.a1) + rod.radius * hit.normal;
+  c.gap = contact_gap(c, to);
+  return c;
+}
+
+// An edge's hit as one of its triangles sees it.
+struct EdgeHit {
+  Edge edge;
+  std::uint64_t key = 0;
+  Contact contact;
+  double facing = 0.0;
+  bool crossed = false;
+};
+
+}  // namespace
+
+std::vector<Rod> rods_of(const Obstacle& o, const Pose& before, const Pose& after,
+                         double longest_edge) {
+  std::vector<Rod> rods;
+  const auto add = [&](const Vec3& a, const Vec3& b, double radius) {
+    rods.push_back({before.at(a), before.at(b), after.at(a), after.at(b), radius, a == b});
+  };
+  if (o.shape == ObstacleShape::box) {
+    const double radius = 0.2 * o.half.minCoeff();
+    const Vec3 in = o.half - Vec3::Constant(radius);
+    const auto corner = [&](int bits) {
+      return Vec3((bits & 1) != 0 ? in.x() : -in.x(), (bits & 2) != 0 ? in.y() : -in.y(),
+                  (bits & 4) != 0 ? in.z() : -in.z());
+    };
+    for (int c = 0; c < 8; ++c) add(corner(c), corner(c), radius);
+    for (int c = 0; c < 8; ++c)
+      for (const int axis : {1, 2, 4})
+        if ((c & axis) == 0) add(corner(c), corner(c | axis), radius);
+    return rods;
+  }
+  if (o.shape == ObstacleShape::plane || o.radius >= 2.0 * longest_edge) return rods;
+  const Vec3 end(0.0, 0.0, o.half.z());
+  add(-end, -end, o.radius);
+  if (o.half.z() > 0.0) {
+    add(end, end, o.radius);
+    add(-end, end, o.radius);
+  }
+  return rods;
+}
+
+void add_rod_contacts(const Rod& rod, const std::vector<Triangle>& triangles,
+                      const std::vector<Index>& near, const std::vector<Vec3>& from,
+                      const std::vector<Vec3>& to, double reach, std::vector<Contact>& out) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3* end : {&rod.a0, &rod.b0, &rod.a1, &rod.b1}) box.extend(*end);
+  const Vec3 margin = Vec3::Constant(rod.radius + reach);
+  box = Eigen::AlignedBox3d(Vec3(box.min() - margin), Vec3(box.max() + margin));
+
+  std::vector<EdgeHit> edges;
+  for (const Index index : near) {
+    const Triangle& t = triangles[uz(index)];
+    Sweep sweep{{}, {}, rod};
+    Eigen::AlignedBox3d around;
+    for (std::size_t i = 0; i < 3; ++i) {
+      sweep.x0[i] = from[uz(t[i])];
+      sweep.x1[i] = to[uz(t[i])];
+      around.extend(sweep.x0[i]);
+      around.extend(sweep.x1[i]);
+    }
+    if (!around.intersects(box)) continue;
+    const auto hit = hit_of(sweep, reach);
+    if (!hit) continue;
+    if (!rod.ball && (hit->pair.share <= 0.0 || hit->pair.share >= 1.0)) continue;
+    Contact c = contact_of(*hit, rod, t, to);
+    if (c.count == 3 && hit->facing > 0.0) {
+      c.key = 3 * static_cast<std::uint64_t>(triangles.size()) + static_cast<std::uint64_t>(index);
+      out.push_back(c);
+    } else if (c.count == 2) {
+      const int apex = hit->pair.weight[0] == 0.0 ? 0 : hit->pair.weight[1] == 0.0 ? 1 : 2;
+      edges.push_back({{std::min(c.node[0], c.node[1]), std::max(c.node[0], c.node[1])},
+                       3 * static_cast<std::uint64_t>(index) + static_cast<std::uint64_t>(apex),
+                       c,
+                       hit->facing,
+                       hit->crossed});
+    }
+  }
+  // An edge counts where both of its triangles have their nearest point on it, or where it was
+  // crossed; once.
+  std::sort(edges.begin(), edges.end(), [](const EdgeHit& a, const EdgeHit& b) {
+    return std::pair(a.edge, a.key) < std::pair(b.edge, b.key);
+  });
+  for (std::size_t i = 0; i < edges.size();) {
+    std::size_t end = i;
+    double facing = 0.0;
+    const EdgeHit* chosen = &edges[i];
+    for (; end < edges.size() && edges[end].edge == edges[i].edge; ++end) {
+      facing += edges[end].facing;
+      if (edges[end].crossed && !chosen->crossed) chosen = &edges[end];
+    }
+    if (facing > 0.0 && (chosen->crossed || end - i >= 2)) {
+      Contact c = chosen->contact;
+      c.key = edges[i].key;
+      out.push_back(c);
+    }
+    i = end;
+  }
+}
+
+}  // namespace sinew

@@ -1,0 +1,36 @@
+// Rods against triangles: segments with a radius (balls, where both ends are one), the parts of
+// tools that may slip between the nodes of a surface.
+#pragma once
+
+#include <vector>
+
+#include "sinew/contact/contact.h"
+#include "sinew/model/obstacle.h"
+
+namespace sinew {
+
+// What is within `radius` of the segment from a to b, over a step. Of a segment that is not a ball
+// only what lies between its ends counts: its ends are balls of their own.
+struct Rod {
+  Vec3 a0 = Vec3::Zero(), b0 = Vec3::Zero();  // at the start of the step [m]
+  Vec3 a1 = Vec3::Zero(), b1 = Vec3::Zero();  // at its end [m]
+  double radius = 0.0;                        // [m] > 0
+  bool ball = true;
+};
+
+// The rods of an obstacle: a sphere; both ends and the side of a capsule (those only where the
+// radius is less than twice `longest_edge` [m] of the body: nodes are enough for larger ones);
+// corners and edges of a box, rounded by a tenth of its smallest side.
+std::vector<Rod> rods_of(const Obstacle& obstacle, const Pose& before, const Pose& after,
+                         double longest_edge);
+
+// Adds the contacts of a rod with the triangles `near` (indices into `triangles`): where the
+// distance between the segment and the surface has a minimum within a triangle or on an edge that
+// is nearest in both of its triangles, and the gap at the end is below `reach`, or where they first
+// met on the way. Contacts with a single node are left out: nodes are looked at on their own.
+// Filled: node, weight, count, normal, anchor, gap; key: 3 triangle + edge, or 3 triangles + t.
+void add_rod_contacts(const Rod& rod, const std::vector<Triangle>& triangles,
+                      const std::vector<Index>& near, const std::vector<Vec3>& from,
+                      const std::vector<Vec3>& to, double reach, std::vector<Contact>& out);
+
+}  // namespace sinew
