@@ -220,7 +220,8 @@ TEST(Build, ALoadByAreaNeedsATriangle) {
 TEST(Build, ObstaclesTakeTheirStiffnessFromTheBodies) {
   const std::string box = "[body.b]\nshape = \"box\"\nyoung = 1e4\npoisson = 0.4\n";
   const std::string ball = "[obstacle.o]\ncenter = [0, 1, 2]\nradius = 0.05\n";
-  const Model m = build(box + ball + "path = [{ time = 1, move = [0, -1, 0] }]\n");
+  const std::string soft = "stiffness = \"soft\"\n";
+  const Model m = build(box + ball + soft + "path = [{ time = 1, move = [0, -1, 0] }]\n");
   ASSERT_EQ(m.obstacles.size(), 1U);
   EXPECT_EQ(m.obstacles[0].name, "o");
   EXPECT_EQ(m.obstacles[0].radius, 0.05);
@@ -229,7 +230,7 @@ TEST(Build, ObstaclesTakeTheirStiffnessFromTheBodies) {
   EXPECT_EQ(m.obstacles[0].path.at(1.0, m.obstacles[0].center), Vec3(0, 0, 2));
   EXPECT_NEAR(sum(m.surface_share), 0.18, 1e-14);
   // The smallest side of the body, where it is less than the radius; a given value as it is.
-  EXPECT_DOUBLE_EQ(build(box + ball, {"o.radius=3"}).obstacles[0].stiffness,
+  EXPECT_DOUBLE_EQ(build(box + ball + soft, {"o.radius=3"}).obstacles[0].stiffness,
                    200 * 1e4 / (1 - 0.16) / 0.1);
   EXPECT_EQ(build(box + ball + "stiffness = 7\n").obstacles[0].stiffness, 7.0);
   EXPECT_NE(build(box + ball).hash(), build(box + ball, {"o.radius=0.06"}).hash());

@@ -23,6 +23,7 @@ void ContactFinder::find(const std::vector<Vec3>& from, const std::vector<Vec3>&
                          double t1, double reach, std::vector<Contact>& contacts) {
   std::vector<Contact> part;
   if (surfaces_) surfaces_->find(from, to, reach, contacts);
+  name_rigid_contacts(model_, from, to, contacts);
   find_collider_contacts(model_, from, to, t0, t1, reach, part);
   contacts.insert(contacts.end(), part.begin(), part.end());
   std::sort(contacts.begin(), contacts.end(),
