@@ -6,7 +6,10 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/base/random.h"
+#include "sinew/contact/find.h"
 #include "sinew/contact/shapes.h"
+#include "sinew/contact/touch_surface.h"
+#include "sinew/forces/obstacles.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -287,6 +290,68 @@ TEST(Colliders, DegenerateTrianglesGiveNumbers) {
   }
   s.from = s.to;
   for (const Contact& c : s.find(0.01)) EXPECT_TRUE(std::isfinite(c.gap) && c.normal.allFinite());
+}
+
+// A sheet of two triangles under the box: what touches a mesh is told as with any other collider.
+TEST(Colliders, ContactsWithAMeshHaveAnAnchorAndNoRigidNodes) {
+  Model model = test::tissue_box(Material{}, {4, 4, 4});
+  Obstacle o;
+  o.name = "sheet";
+  o.friction = 0.2;
+  o.restitution = 0.4;
+  o.path.keys = {{0.0}, {1.0, Vec3(0, 0.002, 0)}};
+  const std::vector<Vec3> corners = {Vec3(-1, -0.051, -1), Vec3(1, -0.051, -1), Vec3(1, -0.051, 1),
+                                     Vec3(-1, -0.051, 1)};
+  const std::vector<Triangle> triangles = {{0, 2, 1}, {0, 3, 2}};
+  add_mesh_obstacle(model, o, corners, triangles);
+  build_touch_surface(model);
+  finish(model);
+  EXPECT_EQ(model.node_name(model.body_node_count() + 2), "obstacle sheet, vertex 2");
+  const std::vector<Vec3> from = model.rest_position;
+  std::vector<Vec3> to = from;
+  for (auto i = uz(model.body_node_count()); i < to.size(); ++i) to[i].y() += 0.002;
+  std::vector<Contact> contacts;
+  ContactFinder finder(model);
+  finder.find(from, to, 0.0, 1.0, 0.0, contacts);
+  EXPECT_EQ(count_of(contacts, 1), 25);
+  for (const Contact& c : contacts) {
+    EXPECT_EQ(c.obstacle, 0);
+    EXPECT_EQ(c.friction, 0.2);
+    EXPECT_EQ(c.restitution, 0.4);
+    EXPECT_LT((c.normal - Vec3::UnitY()).norm(), 1e-12);
+    EXPECT_LT((c.way - Vec3(0, 0.002, 0)).norm(), 1e-12);
+    EXPECT_NEAR(c.gap, -0.001, 1e-12);
+    EXPECT_NEAR(contact_gap(c, to), c.gap, 1e-12);
+    for (int a = 0; a < c.count; ++a)
+      EXPECT_LT(c.node[static_cast<std::size_t>(a)], model.body_node_count());
+  }
+}
+
+// The tip of a rigid pyramid between the nodes of a side.
+TEST(Colliders, AVertexOfAMeshPushesATriangle) {
+  Model model = test::tissue_box(Material{}, {4, 4, 4});
+  Obstacle o;
+  o.name = "tip";
+  o.path.keys = {{0.0}, {1.0, Vec3(0, -0.003, 0)}};
+  const std::vector<Vec3> corners = {Vec3(0.008, 0.051, 0.004), Vec3(0.03, 0.08, -0.02),
+                                     Vec3(-0.02, 0.08, -0.02), Vec3(0.008, 0.08, 0.03)};
+  const std::vector<Triangle> triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
+  add_mesh_obstacle(model, o, corners, triangles);
+  build_touch_surface(model);
+  finish(model);
+  const std::vector<Vec3> from = model.rest_position;
+  std::vector<Vec3> to = from;
+  for (auto i = uz(model.body_node_count()); i < to.size(); ++i) to[i].y() -= 0.003;
+  std::vector<Contact> contacts;
+  ContactFinder finder(model);
+  finder.find(from, to, 0.0, 1.0, 0.0, contacts);
+  ASSERT_EQ(contacts.size(), 1U);
+  const Contact& c = contacts[0];
+  EXPECT_EQ(c.count, 3);
+  EXPECT_NEAR(c.weight[0] + c.weight[1] + c.weight[2], 1.0, 1e-12);
+  EXPECT_LT((c.normal + Vec3::UnitY()).norm(), 1e-12);
+  EXPECT_LT((c.anchor - Vec3(0.008, 0.048, 0.004)).norm(), 1e-12);
+  EXPECT_NEAR(c.gap, -0.002, 1e-12);
 }
 
 }  // namespace

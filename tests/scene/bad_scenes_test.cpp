@@ -233,8 +233,39 @@ const std::vector<Bad>& bad_scenes() {
        "numbers\n"
        "  remedy: the default is deform = [1, 0, 0, 0, 1, 0, 0, 0, 1]"},
       {BEAM "[obstacle.ball]\nradius = 1\n",
-       "scene.toml:3:1: [obstacle.ball] has no 'center'\n"
+       "scene.toml:3:1: [obstacle.ball] has no 'center', which shape = \"sphere\" needs\n"
        "  remedy: add center (docs/scene-format.md)"},
+      {BEAM "[obstacle.table]\nshape = \"box\"\ncenter = [0, 0, 0]\n",
+       "scene.toml:3:1: [obstacle.table] has no 'size', which shape = \"box\" needs\n"
+       "  remedy: add size (docs/scene-format.md)"},
+      {BEAM "[obstacle.o]\nshape = \"plane\"\ncenter = [0, 0, 0]\nradius = 1\n",
+       "scene.toml:6:10: 'radius' in [obstacle.o] does not go with shape = \"plane\"\n"
+       "  remedy: remove it; it belongs to: sphere, capsule"},
+      {BEAM "[obstacle.o]\ncenter = [0, 0, 0]\nradius = 1\nrotation = [0, 90, 0]\n",
+       "scene.toml:6:12: 'rotation' in [obstacle.o] does not go with shape = \"sphere\"\n"
+       "  remedy: remove it; it belongs to: plane, capsule, box, mesh"},
+      {BEAM "[obstacle.o]\nshape = \"plane\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\n"
+            "rotation = [0, 90, 0]\n",
+       "scene.toml:7:12: [obstacle.o] has both normal and rotation\n"
+       "  remedy: remove one of them"},
+      {BEAM "[obstacle.o]\nshape = \"plane\"\ncenter = [0, 0, 0]\nstiffness = 1\n",
+       "scene.toml:6:13: 'stiffness' in [obstacle.o] does not go with shape = \"plane\"\n"
+       "  remedy: remove it: without a stiffness the obstacle is hard; only a sphere can be soft"},
+      {BEAM "[obstacle.o]\ncenter = [0, 0, 0]\nradius = 1\nstiffness = \"sof\"\n",
+       "scene.toml:6:13: 'stiffness' in [obstacle.o] is \"sof\"; expected a number or \"soft\" "
+       "(N/m3); did you mean 'soft'?\n"
+       "  remedy: docs/scene-format.md says what 'stiffness' takes"},
+      {BEAM "[obstacle.o]\ncenter = [0, 0, 0]\nradius = 1\nstiffness = 1\nfriction = 1\n",
+       "scene.toml:7:12: 'friction' in [obstacle.o] goes with hard obstacles only, and "
+       "[obstacle.o] has a stiffness\n"
+       "  remedy: remove it, or remove stiffness"},
+      {BEAM "[obstacle.o]\ncenter = [0, 0, 0]\nradius = 1\n"
+            "path = [{ time = 1, deform = [2, 0, 0, 0, 1, 0, 0, 0, 1] }]\n",
+       "scene.toml:6:8: key frame 0 of [obstacle.o] deforms it\n"
+       "  remedy: an obstacle is rigid: use move and turn only"},
+      {BEAM "[obstacle.o]\nmesh = \"\"\n",
+       "scene.toml:4:8: 'mesh' in [obstacle.o] is empty; expected a file name\n"
+       "  remedy: name a surface .off .obj .stl .ply, relative to the scene's folder"},
       {BEAM "[obstacle.a]\ncenter = [0, 0, 0]\nradius = 1\n[probe.a]\nselect = { all = true }\n",
        "scene.toml:3:1: an obstacle and a probe are both called 'a'\n"
        "  remedy: they share the table probes.csv: rename one of them"},

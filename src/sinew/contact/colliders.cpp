@@ -286,6 +286,44 @@ void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
             [](const Contact& a, const Contact& b) { return a.key < b.key; });
 }
 
+void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
+                         const std::vector<Vec3>& to, std::vector<Contact>& contacts) {
+  const Index bodies = model.body_node_count();
+  for (Contact& c : contacts) {
+    int rigid = -1;
+    for (int a = 0; a < c.count; ++a)
+      if (c.node[static_cast<std::size_t>(a)] >= bodies) rigid = a;
+    if (rigid < 0) continue;
+    const Index vertex = c.node[static_cast<std::size_t>(rigid)];
+    const auto found = std::find_if(model.obstacles.begin(), model.obstacles.end(),
+                                    [&](const Obstacle& o) { return o.nodes.contains(vertex); });
+    if (found == model.obstacles.end()) continue;
+    // r and the normal both change their sign where the obstacle is what touches: the gap does not.
+    const double sign = c.node[0] >= bodies ? -1.0 : 1.0;
+    Contact out = c;
+    out.node = {-1, -1, -1, -1};
+    out.weight = {};
+    out.count = 0;
+    out.normal = sign * c.normal;
+    for (int a = 0; a < c.count; ++a) {
+      const Index node = c.node[static_cast<std::size_t>(a)];
+      const double weight = sign * c.weight[static_cast<std::size_t>(a)];
+      if (node >= bodies) {
+        out.anchor -= weight * to[uz(node)];
+        out.way -= weight * (to[uz(node)] - from[uz(node)]);
+      } else {
+        out.node[static_cast<std::size_t>(out.count)] = node;
+        out.weight[static_cast<std::size_t>(out.count)] = weight;
+        ++out.count;
+      }
+    }
+    out.friction = found->friction;
+    out.restitution = found->restitution;
+    out.obstacle = static_cast<Index>(found - model.obstacles.begin());
+    c = out;
+  }
+}
+
 ColliderReading read_collider(const Model& model, const Obstacle& obstacle,
                               const std::vector<Vec3>& x, double time, double reach) {
   ColliderReading reading;

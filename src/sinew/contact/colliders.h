@@ -30,6 +30,12 @@ void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
                             const std::vector<Vec3>& to, double t0, double t1, double reach,
                             std::vector<Contact>& out);
 
+// Contacts with rigid meshes as SurfaceContacts finds them, between nodes, into contacts with a
+// collider: what is touched is the obstacle, whose nodes go into `anchor` and `way`; friction and
+// restitution are its own. What touches no mesh stays as it is; an order by key is kept.
+void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
+                         const std::vector<Vec3>& to, std::vector<Contact>& contacts);
+
 // How the bodies stand to an obstacle at positions x and a time: the deepest node [m] (0: none is
 // inside) and how many nodes are inside or within `reach` [m].
 struct ColliderReading {

@@ -25,6 +25,7 @@ void ContactFinder::find(const std::vector<Vec3>& from, const std::vector<Vec3>&
   std::vector<Contact> part;
   if (surfaces_) {
     surfaces_->find(from, to, reach, part);
+    name_rigid_contacts(model_, from, to, part);
     contacts.insert(contacts.end(), part.begin(), part.end());
     part.clear();
   }

@@ -70,7 +70,8 @@ NearLists::NearLists(const Model& model, const Touching& touching) : touching_(t
   const Touch touch = model.touch.value_or(Touch{false, false, 0.0, 0.0});
   for (Index a = 0; a < s.owner_count(); ++a) {
     for (Index b = a; b < s.owner_count(); ++b) {
-      if (a >= s.body_count || !(a == b ? touch.self : touch.bodies)) continue;
+      const bool rigid = b >= s.body_count;
+      if (a >= s.body_count || !(a == b ? touch.self : rigid || touch.bodies)) continue;
       if (owners_[uz(a)].reference.empty() || owners_[uz(b)].reference.empty()) continue;
       NearPair pair;
       pair.a = a;
@@ -181,10 +182,10 @@ void NearLists::build_nodes(Index a, Index b, double more, bool swept, const Mov
       std::erase_if(found, [&](Index t) {
         const Triangle& tri = s.triangles[uz(first + t)];
         if (swept) return a == b && touching_.node_apart(slot, first + t, 0.0);
-        const double distance = std::sqrt(
-            nearest_on_triangle(moves.to[uz(node[0])], moves.to[uz(tri[0])], moves.to[uz(tri[1])],
-                                moves.to[uz(tri[2])])
-                .distance2);
+        const double distance =
+            std::sqrt(nearest_on_triangle(moves.to[uz(node[0])], moves.to[uz(tri[0])],
+                                          moves.to[uz(tri[1])], moves.to[uz(tri[2])])
+                          .distance2);
         return distance > range ||
                (a == b && touching_.node_apart(slot, first + t, distance - more));
       });

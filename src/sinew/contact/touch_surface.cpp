@@ -126,7 +126,9 @@ void add_owner(const std::vector<Vec3>& x, std::span<const Triangle> triangles,
 
 void build_touch_surface(Model& model) {
   model.surface = {};
-  if (!model.touch) return;
+  const bool rigid = std::any_of(model.obstacles.begin(), model.obstacles.end(),
+                                 [](const Obstacle& o) { return o.shape == ObstacleShape::mesh; });
+  if (!model.touch && !rigid) return;
   model.surface.body_count = static_cast<Index>(model.bodies.size());
   const Surface all = build_surface(model.tets, model.node_count());
   for (const Body& body : model.bodies) {
@@ -140,6 +142,9 @@ void build_touch_surface(Model& model) {
       heights.push_back(base > 0.0 ? 3.0 * volume / base : 0.0);
     }
     add_owner(model.rest_position, triangles, heights, model.surface);
+  }
+  for (const Obstacle& o : model.obstacles) {
+    if (o.shape == ObstacleShape::mesh) add_rigid_touch_surface(model, o.triangles);
   }
 }
 

@@ -7,8 +7,9 @@
 
 namespace sinew {
 
-// Fills Model::surface with the surfaces of all bodies, from Model::tets and ::bodies; leaves it
-// empty where Model::touch has nothing. Rest lengths come from Model::rest_position.
+// Fills Model::surface with the surfaces of all bodies, from Model::tets and ::bodies, and of all
+// obstacles that are meshes; leaves it empty where there is neither Model::touch nor such an
+// obstacle. Rest lengths come from Model::rest_position.
 void build_touch_surface(Model& model);
 
 // Appends a rigid mesh as the next owner, after build_touch_surface(): triangles of node ids that

@@ -28,6 +28,25 @@ void add_obstacle(Model& model, Obstacle obstacle) {
   }
 }
 
+void add_mesh_obstacle(Model& model, Obstacle obstacle, std::span<const Vec3> vertices,
+                       std::span<const Triangle> triangles) {
+  const Index first = model.node_count();
+  obstacle.shape = ObstacleShape::mesh;
+  obstacle.nodes = {first, first + static_cast<Index>(vertices.size())};
+  Pin pin{obstacle.name, {}, obstacle.path};
+  for (const Vec3& x : vertices) {
+    pin.nodes.push_back(model.node_count());
+    model.rest_position.push_back(x);
+    model.mass.push_back(0.0);
+    model.drag.push_back(0.0);
+    model.start_velocity.push_back(Vec3::Zero());
+  }
+  for (const Triangle& t : triangles)
+    obstacle.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  model.pins.push_back(std::move(pin));
+  add_obstacle(model, std::move(obstacle));
+}
+
 std::vector<Vec3> obstacle_centers(const Model& model, double time) {
   std::vector<Vec3> centers;
   for (const Obstacle& o : model.obstacles) centers.push_back(o.path.at(time, o.center));
@@ -92,6 +111,7 @@ std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const 
     ObstacleReading reading;
     reading.name = o.name;
     reading.center = o.path.at(time, o.center);
+    reading.travel = reading.center - o.path.at(0.0, o.center);
     for (std::size_t n = 0; n < model.surface_share.size(); ++n) {
       if (o.hard() || model.surface_share[n] == 0.0 || model.inverse_mass[n] == 0.0) continue;
       const Vec3 r = x[n] - reading.center;

@@ -1,4 +1,5 @@
-// Obstacles: rigid, frictionless spheres that press on the surface of bodies.
+// Soft obstacles: rigid, frictionless spheres that press on the surface of bodies. Hard ones are
+// contacts (contact/colliders.h); here they add nothing.
 // docs/methods/obstacles.md.
 //
 // A node of the surface at x, with A its share of the surface's area at rest, is pushed out of the
@@ -47,6 +48,12 @@ inline Vec3 obstacle_stiffness_times(const Vec3& r, double radius, double stiffn
 // Adds the obstacle to the model. Call after the last add_body.
 void add_obstacle(Model& model, Obstacle obstacle);
 
+// Adds a rigid triangle mesh: its vertices in the world [m] become nodes of the Model that a pin
+// moves along the obstacle's path, as anchors do; triangles are indices into `vertices`. Call after
+// the last add_body.
+void add_mesh_obstacle(Model& model, Obstacle obstacle, std::span<const Vec3> vertices,
+                       std::span<const Triangle> triangles);
+
 // Where the obstacles' centres are at a time [m] (obstacles).
 std::vector<Vec3> obstacle_centers(const Model& model, double time);
 
@@ -81,10 +88,19 @@ inline double largest_obstacle_stiffness(const Model& model, Index node) {
 struct ObstacleReading {
   std::string name;
   Vec3 center = Vec3::Zero();  // [m]
+  Vec3 travel = Vec3::Zero();  // of the centre since time 0 [m]
   Vec3 force = Vec3::Zero();   // of the bodies on the obstacle [N]
   double depth = 0.0;          // of the deepest node [m]
   Index contacts = 0;          // nodes that it pushes
 };
+// The force that its travel so far goes against [N]: that of an indenter, > 0 where it is pushed
+// back. 0 before it has moved.
+inline double against_travel(const ObstacleReading& reading) {
+  const double travel = reading.travel.norm();
+  return travel > 0.0 ? -reading.force.dot(reading.travel) / travel : 0.0;
+}
+
+// Name, centre and travel of all; force, depth and contacts of those that are soft.
 std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const Vec3> x,
                                             double time);
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/base/parallel.h"
+#include "sinew/contact/colliders.h"
 #include "sinew/forces/obstacles.h"
 
 namespace sinew::live {
@@ -37,10 +38,19 @@ std::vector<std::uint8_t> find_contacts(const Model& model, const State& state,
     }
     const bool on_surface = n < model.surface_share.size() && model.surface_share[n] > 0.0;
     for (std::size_t c = 0; c < centers.size() && on_surface; ++c) {
-      touches = touches || (x - centers[c]).norm() < model.obstacles[c].radius;
+      const Obstacle& o = model.obstacles[c];
+      touches = touches || (!o.hard() && (x - centers[c]).norm() < o.radius);
     }
     marks[uz(i)] = touches ? 1 : 0;
   });
+  std::vector<std::uint8_t> hard(model.rest_position.size(), 0);
+  std::vector<Contact> contacts;
+  find_collider_contacts(model, state.position, state.position, state.time, state.time,
+                         touch * static_cast<double>(topology.diagonal), contacts);
+  for (const Contact& c : contacts)
+    for (int a = 0; a < c.count; ++a) hard[uz(c.node[static_cast<std::size_t>(a)])] = 1;
+  for (std::size_t i = 0; i < marks.size() && !contacts.empty(); ++i)
+    marks[i] = static_cast<std::uint8_t>(marks[i] | hard[uz(topology.node[i])]);
   if (std::find(marks.begin(), marks.end(), 1) == marks.end()) return {};
   return marks;
 }

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "sinew/base/error.h"
-#include "sinew/forces/obstacles.h"
 #include "sinew/forces/springs.h"
 #include "sinew/live/carry_over.h"
 #include "sinew/live/look.h"
+#include "sinew/run/obstacle_reading.h"
 #include "sinew/run/recorder.h"
 #include "sinew/run/summary.h"
 #include "sinew/scene/build.h"
@@ -313,7 +313,7 @@ Status Simulation::status() {
   for (const ProbeReading& p : read_probes(*model_, run_.state.position)) {
     s.probes.push_back(p.displacement);
   }
-  for (const ObstacleReading& o : read_obstacles(*model_, run_.state.position, run_.state.time)) {
+  for (const ObstacleReading& o : read_obstacles(*model_, run_.state)) {
     if (s.obstacles.size() == scene_.obstacles.size()) break;  // the ball comes last
     const double radius = model_->obstacles[s.obstacles.size()].radius;
     s.obstacles.push_back({o.center, radius, o.force, o.contacts});

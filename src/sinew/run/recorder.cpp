@@ -15,6 +15,7 @@
 #include "sinew/io/file_io.h"
 #include "sinew/io/pvd.h"
 #include "sinew/io/vtu.h"
+#include "sinew/run/obstacle_reading.h"
 #include "sinew/run/summary.h"
 
 namespace sinew {
@@ -36,6 +37,7 @@ std::string probe_header(const Model& model) {
   for (const Obstacle& o : model.obstacles) {
     for (const char* c : {"x", "y", "z"}) header += fmt::format(",{}.{} [m]", o.name, c);
     for (const char* c : {"fx", "fy", "fz"}) header += fmt::format(",{}.{} [N]", o.name, c);
+    header += fmt::format(",{0}.travel [m],{0}.against [N]", o.name);
   }
   return header;
 }
@@ -126,9 +128,10 @@ void Recorder::record(RunState& run, Workspace& workspace) {
     add(p.position);
     add(p.displacement);
   }
-  for (const ObstacleReading& o : read_obstacles(model_, x, run.state.time)) {
+  for (const ObstacleReading& o : read_obstacles(model_, run.state)) {
     add(o.center);
     add(o.force);
+    row += fmt::format(",{},{}", o.travel.norm(), against_travel(o));
   }
   add_row(probes_, folder_ / "probes.csv", row);
 

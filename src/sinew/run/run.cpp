@@ -11,6 +11,7 @@
 #include "sinew/forces/springs.h"
 #include "sinew/io/file_io.h"
 #include "sinew/run/checkpoint.h"
+#include "sinew/run/force_curve.h"
 #include "sinew/run/recorder.h"
 #include "sinew/scene/build.h"
 
@@ -171,6 +172,7 @@ class Runner {
           100.0 * tangled_share, run.righting_steps, run.state.step));
     }
     if (!options_.out.empty()) {
+      write_force_curves(options_.out, model_);
       io::write_file(options_.out / summary_name, to_json(s).dump(2) + "\n");
     }
     return s;

@@ -8,6 +8,7 @@
 #include "sinew/forces/springs.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
+#include "sinew/run/obstacle_reading.h"
 
 namespace sinew {
 namespace {
@@ -141,7 +142,7 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.residual = run.residual;
   s.largest_cell_change = largest_cell_change(model, x);
   s.probes = read_probes(model, x);
-  s.obstacles = read_obstacles(model, x, run.state.time);
+  s.obstacles = read_obstacles(model, run.state);
   return s;
 }
 

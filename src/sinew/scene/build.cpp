@@ -18,6 +18,7 @@
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/surface.h"
 #include "sinew/scene/place.h"
+#include "sinew/scene/rigid_mesh.h"
 #include "sinew/scene/select.h"
 #include "sinew/scene/start.h"
 
@@ -271,6 +272,10 @@ class Parts {
 
   void add_obstacle_of(const SceneObstacle& o) {
     Obstacle obstacle = obstacle_of(o);
+    if (obstacle.shape == ObstacleShape::mesh) {
+      const RigidMesh mesh = read_rigid_mesh(scene_, o);
+      return add_mesh_obstacle(model_, std::move(obstacle), mesh.vertices, mesh.triangles);
+    }
     if (o.soft)
       obstacle.stiffness = o.stiffness.value_or(default_obstacle_stiffness(bodies_, o.radius));
     add_obstacle(model_, std::move(obstacle));
@@ -355,6 +360,7 @@ Model build_model(const Scene& scene, BuildReport* report) {
     model.touch = Touch{c->bodies, c->self, c->friction, c->restitution};
   build_touch_surface(model);
   Parts(scene, bodies, model).add();
+  build_touch_surface(model);
   finish(model);
   return model;
 }

@@ -7,9 +7,9 @@
 #include <limits>
 #include <numbers>
 
-#include "sinew/forces/obstacles.h"
 #include "sinew/forces/terms.h"
 #include "sinew/mesh/tet_mesh.h"
+#include "sinew/run/obstacle_reading.h"
 #include "sinew/scene/build.h"
 #include "sinew/scene/keys.h"
 #include "sinew/solver/modes.h"
@@ -198,7 +198,7 @@ double Experiment::measure(const Quantity& q) {
     case Kind::obstacle: {
       const Obstacle& obstacle = named(model_.obstacles, q, "obstacle");
       const auto o = static_cast<std::size_t>(&obstacle - model_.obstacles.data());
-      return read_obstacles(model_, run_.state.position, run_.state.time)[o].force[axis];
+      return read_obstacles(model_, run_.state)[o].force[axis];
     }
     case Kind::contact_time:
       return contact_time_;

@@ -1,0 +1,39 @@
+#include "sinew/run/obstacle_reading.h"
+
+#include <algorithm>
+
+#include "sinew/contact/find.h"
+
+namespace sinew {
+namespace {
+
+double longest_edge(const Model& model) {
+  double longest = 0.0;
+  for (const double l : model.skin.longest_edge) longest = std::max(longest, l);
+  return longest;
+}
+
+}  // namespace
+
+std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state) {
+  std::vector<ObstacleReading> readings = read_obstacles(model, state.position, state.time);
+  const bool hard = std::any_of(model.obstacles.begin(), model.obstacles.end(),
+                                [](const Obstacle& o) { return o.hard(); });
+  if (!hard) return readings;
+  for (std::size_t o = 0; o < readings.size() && o < state.obstacle_force.size(); ++o)
+    if (model.obstacles[o].hard()) readings[o].force = state.obstacle_force[o];
+
+  std::vector<Contact> contacts;
+  ContactFinder finder(model);
+  finder.find(state.position, state.position, state.time, state.time, 1e-3 * longest_edge(model),
+              contacts);
+  for (const Contact& c : contacts) {
+    if (c.obstacle < 0) continue;
+    ObstacleReading& reading = readings[uz(c.obstacle)];
+    ++reading.contacts;
+    reading.depth = std::max(reading.depth, -c.gap);
+  }
+  return readings;
+}
+
+}  // namespace sinew
