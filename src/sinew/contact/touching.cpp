@@ -12,11 +12,6 @@ constexpr double opposed = 0.3;       // cosine of node's and triangle's normals
 constexpr double opposed_self = 0.0;  // the same within a body
 constexpr std::uint64_t edge_kind = std::uint64_t{1} << 62;
 
-Vec3 area_normal(const std::vector<Vec3>& x, const Triangle& t) {
-  const Vec3& a = x[uz(t[0])];
-  return (x[uz(t[1])] - a).cross(x[uz(t[2])] - a);
-}
-
 // 0 where there is no direction.
 Vec3 unit(const Vec3& v) {
   const double n = v.norm();
@@ -29,6 +24,10 @@ OnTriangle nearest_on(const Vec3& p, const std::vector<Vec3>& x, const Triangle&
 
 bool holds(const Triangle& t, Index node) {
   return t[0] == node || t[1] == node || t[2] == node;
+}
+
+bool joined(const Edge& a, const Edge& b) {
+  return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
 }
 
 // How far the pair moves against each other within the step.
@@ -68,6 +67,15 @@ Touching::Touching(const Model& model)
     largest_size_.push_back(largest);
     smallest_size_.push_back(smallest);
   }
+  for (const Triangle& t : surface_.triangles) rest_plane_.push_back(plane_of(rest_, t));
+  for (std::size_t i = 0; i < surface_.nodes.size(); ++i) {
+    Vec3 sum = Vec3::Zero();
+    for (Index k = surface_.ring_start[i]; k < surface_.ring_start[i + 1]; ++k) {
+      const Plane& plane = rest_plane_[uz(surface_.ring[uz(k)])];
+      sum += plane.length * plane.normal;
+    }
+    rest_normal_.push_back(unit(sum));
+  }
   for (std::size_t e = 0; e < surface_.edges.size(); ++e) {
     if (surface_.edge_triangles[e][1] != -1) continue;
     const Index t = surface_.edge_triangles[e][0];
@@ -104,14 +112,6 @@ double Touching::rest_distance(const Edge& a, const Edge& b) const {
   return segments_distance(rest_[uz(a[0])], rest_[uz(a[1])], rest_[uz(b[0])], rest_[uz(b[1])]);
 }
 
-Vec3 Touching::node_normal(Index slot, const std::vector<Vec3>& x) const {
-  Vec3 sum = Vec3::Zero();
-  for (Index k = surface_.ring_start[uz(slot)]; k < surface_.ring_start[uz(slot) + 1]; ++k) {
-    sum += area_normal(x, surface_.triangles[uz(surface_.ring[uz(k)])]);
-  }
-  return unit(sum);
-}
-
 bool Touching::on_boundary(Index t, const OnTriangle& on) const {
   const Triangle& tri = surface_.triangles[uz(t)];
   for (std::size_t c = 0; c < 3; ++c) {
@@ -125,10 +125,10 @@ bool Touching::on_boundary(Index t, const OnTriangle& on) const {
 
 // The two sides of a slit: at rest they face each other over a gap, not over material.
 bool Touching::slit(Index slot, Index t, double apart) const {
-  const Triangle& tri = surface_.triangles[uz(t)];
-  const Vec3 n = unit(area_normal(rest_, tri));
-  const double front = n.dot(rest_[uz(surface_.nodes[uz(slot)])] - rest_[uz(tri[0])]);
-  return front > 0.5 * apart && node_normal(slot, rest_).dot(n) < -0.5;
+  const Vec3& n = rest_plane_[uz(t)].normal;
+  if (!(rest_normal_[uz(slot)].dot(n) < -0.5)) return false;
+  const Vec3& a = rest_[uz(surface_.triangles[uz(t)][0])];
+  return n.dot(rest_[uz(surface_.nodes[uz(slot)])] - a) > 0.5 * apart;
 }
 
 bool Touching::node_apart(Index slot, Index t, double distance) const {
@@ -139,7 +139,8 @@ bool Touching::node_apart(Index slot, Index t, double distance) const {
 }
 
 bool Touching::edges_apart(Index a, Index b, double distance) const {
-  return distance >= self_share * rest_distance(surface_.edges[uz(a)], surface_.edges[uz(b)]);
+  const Edge &e = surface_.edges[uz(a)], &f = surface_.edges[uz(b)];
+  return joined(e, f) || distance >= self_share * rest_distance(e, f);
 }
 
 double Touching::calm_motion(Index a, Index b) const {
@@ -156,11 +157,10 @@ bool Touching::self_pair_counts(Index slot, Index t, const OnTriangle& on, doubl
   if (!(std::sqrt(on.distance2) < self_share * apart)) return side < 0.0 && slit(slot, t, apart);
   if (side >= 0.0) return true;
   // Behind it at rest, through the material: only if it has come from the front.
-  const Vec3 n = area_normal(rest_, tri);
+  const Vec3& n = rest_plane_[uz(t)].normal;
   const double behind = n.dot(rest_[uz(node)] - rest_[uz(tri[0])]);
-  if (!(behind < 0.0 && node_normal(slot, rest_).dot(n) < 0.0)) return true;
-  const Vec3 now = unit(area_normal(from, tri));
-  return now.dot(from[uz(node)] - from[uz(tri[0])]) > -0.2 * self_share * apart;
+  if (!(behind < 0.0 && rest_normal_[uz(slot)].dot(n) < 0.0)) return true;
+  return plane_of(from, tri).normal.dot(from[uz(node)] - from[uz(tri[0])]) > -0.2 * self_share * apart;
 }
 
 // Keeps the nearer of two. Where both are at one place, an edge or a corner, that whose plane the
@@ -170,37 +170,89 @@ void Touching::Near::take(const Near& other) {
   constexpr double same = 1e-7;
   if (triangle >= 0) {
     if (other.on.distance2 > on.distance2 * (1.0 + same) + 1e-30) return;
-    if (other.on.distance2 >= on.distance2 * (1.0 - same) - 1e-30 &&
-        !(std::abs(other.side) > std::abs(side) * (1.0 + 1e-9))) {
-      return;
+    if (other.on.distance2 >= on.distance2 * (1.0 - same) - 1e-30) {
+      const double mine = std::abs(side), its = std::abs(other.side);
+      if (its < mine * (1.0 - 1e-9)) return;
+      if (its <= mine * (1.0 + 1e-9) && other.triangle > triangle) return;
     }
   }
   *this = other;
 }
 
-Touching::Nearest Touching::nearest(Index slot, bool self, std::span<const Index> triangles,
-                                    const std::vector<Vec3>& x, const std::vector<Vec3>& from,
-                                    double range) const {
+template <typename PlaneOf>
+Touching::Nearest Touching::nearest(Index slot, bool self, const NearTriangles& triangles,
+                                    const PlaneOf& plane_at, const std::vector<Vec3>& x,
+                                    const std::vector<Vec3>& from, double range) const {
   const Index node = surface_.nodes[uz(slot)];
   const Vec3& p = x[uz(node)];
   Vec3 normal = Vec3::Zero();
+  double length = 0.0;
   bool known = false;
   Nearest result;
-  for (const Index t : triangles) {
+  const auto take = [&](Index t, const Plane& plane, const OnTriangle& on) {
+    Near near;
+    near.triangle = t;
+    near.on = on;
+    near.plane = plane.normal;
+    near.side = plane.normal.dot(p - on.point);
+    near.inside = near.side < 0.0 && !on_boundary(t, on);
+    if (self && !self_pair_counts(slot, t, on, near.side, from)) return;
+    if (!known) {
+      for (Index k = surface_.ring_start[uz(slot)]; k < surface_.ring_start[uz(slot) + 1]; ++k) {
+        const Plane& around = plane_at(surface_.ring[uz(k)]);
+        normal += around.length * around.normal;
+      }
+      length = normal.norm();
+      known = true;
+    }
+    if (!self) result.any.take(near);
+    if (normal.dot(near.plane) < (self ? opposed_self : opposed) * length) result.fit.take(near);
+  };
+  const std::size_t count = triangles.triangle.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    // Nothing farther than this is of use.
+    const double useful2 =
+        result.fit.triangle < 0
+            ? range * range
+            : (self ? result.fit.on.distance2
+                    : std::max(result.fit.on.distance2, result.any.on.distance2)) *
+                      (1.0 + 1e-6) +
+                  1e-29;
+    if (!triangles.far.empty()) {
+      const double least = static_cast<double>(triangles.far[k]) - triangles.moved;
+      if (least > 0.0 && least * least > useful2) break;
+    }
+    const Index t = triangles.triangle[k];
     const Triangle& tri = surface_.triangles[uz(t)];
     if (self && holds(tri, node)) continue;
-    Near near;
-    near.on = nearest_on(p, x, tri);
-    if (!(near.on.distance2 <= range * range)) continue;
-    near.triangle = t;
-    near.plane = unit(area_normal(x, tri));
-    near.side = near.plane.dot(p - near.on.point);
-    near.inside = near.side < 0.0 && !on_boundary(t, near.on);
-    if (self && !self_pair_counts(slot, t, near.on, near.side, from)) continue;
-    if (!known) normal = node_normal(slot, x);
-    known = true;
-    if (!self) result.any.take(near);
-    if (normal.dot(near.plane) < (self ? opposed_self : opposed)) result.fit.take(near);
+    const Plane& plane = plane_at(t);
+    const Vec3 &a = x[uz(tri[0])], &b = x[uz(tri[1])], &c = x[uz(tri[2])];
+    const Vec3 ab = b - a, ac = c - a, ap = p - a;
+    const double side = plane.normal.dot(ap);
+    const double side2 = side * side;
+    if (side2 > range * range) continue;
+    // The normal of a needle is noise.
+    if (plane.length > 1e-10 * std::max(ab.squaredNorm(), ac.squaredNorm())) {
+      const double b_area = ap.cross(ac).dot(plane.normal);
+      const double c_area = ab.cross(ap).dot(plane.normal);
+      const double a_area = plane.length - b_area - c_area;
+      if (a_area > 0.0 && b_area > 0.0 && c_area > 0.0) {
+        OnTriangle on;
+        const double wb = b_area / plane.length, wc = c_area / plane.length;
+        on.weight = {1.0 - wb - wc, wb, wc};
+        on.point = a + wb * ab + wc * ac;
+        on.distance2 = side2;
+        take(t, plane, on);
+        continue;
+      }
+      // At least as far as the plane and the line through an edge that the node lies beyond.
+      const auto beyond = [&](double area, const Vec3& edge) {
+        return area < 0.0 && (side2 - useful2) * edge.squaredNorm() + area * area * (1.0 - 1e-9) > 0;
+      };
+      if (beyond(a_area, c - b) || beyond(b_area, ac) || beyond(c_area, ab)) continue;
+    }
+    const OnTriangle on = nearest_on(p, x, tri);
+    if (on.distance2 <= range * range) take(t, plane, on);
   }
   if (self) result.any = result.fit;
   return result;
@@ -224,12 +276,16 @@ bool Touching::node_contact_of(Index slot, const Near& near, double range, const
   return true;
 }
 
-bool Touching::node_touches(Index slot, Index owner, std::span<const Index> triangles, bool calm,
-                            const Moves& moves, Contact& c) const {
+NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& triangles,
+                            std::span<const Plane> planes, bool calm, const Moves& moves,
+                            Contact& c) const {
   const Index node = surface_.nodes[uz(slot)];
   const bool self = surface_.owner_nodes[uz(owner)].contains(slot);
   const double range = node_range(slot, owner, moves.reach);
-  const Nearest end = nearest(slot, self, triangles, moves.to, moves.from, range);
+  const auto at_end = [&](Index t) -> const Plane& { return planes[uz(t)]; };
+  const Nearest end = nearest(slot, self, triangles, at_end, moves.to, moves.from, range);
+  const NodeTouch other = end.any.triangle < 0 ? NodeTouch::none : NodeTouch::near;
+  if (calm && end.fit.triangle < 0) return other;
 
   c = Contact{};
   c.count = 4;
@@ -246,17 +302,24 @@ bool Touching::node_touches(Index slot, Index owner, std::span<const Index> tria
            calm_share * std::min(surface_.node_size[uz(slot)], surface_.triangle_size[uz(t)]);
   };
   if (!calm) {
-    const Nearest start = nearest(slot, self, triangles, moves.from, moves.from, range);
+    const auto at_start = [&](Index t) {
+      return plane_of(moves.from, surface_.triangles[uz(t)]);
+    };
+    const Nearest start =
+        nearest(slot, self, triangles, at_start, moves.from, moves.from, range);
     if (start.any.inside && start.fit.inside && fast(start.fit.triangle) &&
         start.fit.distance() <= pair_depth(slot, start.fit.triangle)) {
       hit = {true, 0.0, start.fit.on.weight, start.fit.plane};
       hit_triangle = start.fit.triangle;
     } else {
-      for (const Index t : triangles) {
+      for (const Index t : triangles.triangle) {
         const Triangle& tri = surface_.triangles[uz(t)];
         if (!fast(t) || (self && (holds(tri, node) || rest_distance(node, tri) == 0.0))) continue;
         const Meeting m = node_meets_triangle(motion_of(node, tri[0], tri[1], tri[2], moves));
-        if (!m.met || (hit.met && hit.moment <= m.moment)) continue;
+        if (!m.met || (hit.met && (hit.moment < m.moment ||
+                                   (hit.moment == m.moment && hit_triangle < t)))) {
+          continue;
+        }
         hit = m;
         hit_triangle = t;
       }
@@ -281,10 +344,10 @@ bool Touching::node_touches(Index slot, Index owner, std::span<const Index> tria
     }
     c.normal = hit.normal;
     c.moment = hit.moment;
-    if (finish(hit_triangle)) return true;
+    if (finish(hit_triangle)) return NodeTouch::touches;
   }
-  if (!(deep || close)) return false;
-  if (!node_contact_of(slot, end.fit, range, moves, c)) return false;
+  if (!(deep || close)) return other;
+  if (!node_contact_of(slot, end.fit, range, moves, c)) return other;
   if (hit.met) {
     c.moment = hit.moment;
   } else {  // the gap as if it changed evenly
@@ -292,7 +355,7 @@ bool Touching::node_touches(Index slot, Index owner, std::span<const Index> tria
     const double after = contact_gap(c, moves.to);
     c.moment = before <= 0.0 ? 0.0 : (after < 0.0 ? before / (before - after) : 1.0);
   }
-  return finish(end.fit.triangle);
+  return finish(end.fit.triangle) ? NodeTouch::touches : other;
 }
 
 // Whether the surface around an edge lies behind the plane through it with normal n, at a moment of
@@ -322,7 +385,11 @@ bool Touching::supports(Index edge, const Vec3& n, const Moves& m, double moment
 
 bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Contact& c) const {
   const Edge &a = surface_.edges[uz(ea)], &b = surface_.edges[uz(eb)];
-  if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) return false;
+  const auto& x = moves.to;
+  const OnLines on = nearest_on_lines(x[uz(a[0])], x[uz(a[1])], x[uz(b[0])], x[uz(b[1])]);
+  const bool over = !on.parallel && on.s > 0.0 && on.s < 1.0 && on.t > 0.0 && on.t < 1.0;
+  if (calm && !over) return false;
+  if (joined(a, b)) return false;
   const double size = std::min(edge_size(ea), edge_size(eb));
   const bool self = triangle_owner_[uz(surface_.edge_triangles[uz(ea)][0])] ==
                     triangle_owner_[uz(surface_.edge_triangles[uz(eb)][0])];
@@ -339,9 +406,7 @@ bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Co
   };
 
   // At the end.
-  const auto& x = moves.to;
-  const OnLines on = nearest_on_lines(x[uz(a[0])], x[uz(a[1])], x[uz(b[0])], x[uz(b[1])]);
-  if (!on.parallel && on.s > 0.0 && on.s < 1.0 && on.t > 0.0 && on.t < 1.0) {
+  if (over) {
     Vec3 n = unit((x[uz(a[1])] - x[uz(a[0])]).cross(x[uz(b[1])] - x[uz(b[0])]));
     for (int turn = 0; turn < 2; ++turn, n = -n) {
       if (!supports(eb, n, moves, 1.0, 0.1) || !supports(ea, -n, moves, 1.0, 0.1)) continue;
