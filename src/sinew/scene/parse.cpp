@@ -111,6 +111,7 @@ Scene parse_root(const DocValue& document) {
   };
   parse_named(root, "pin", scene.pins, with_bodies(parse_pin));
   parse_named(root, "attachment", scene.attachments, with_bodies(parse_attachment));
+  parse_named(root, "distance", scene.distances, with_bodies(parse_distance));
   parse_named(root, "force", scene.forces, with_bodies(parse_force));
   parse_named(root, "probe", scene.probes, with_bodies(parse_probe));
   parse_named(root, "obstacle", scene.obstacles, parse_obstacle);

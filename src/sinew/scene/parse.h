@@ -16,6 +16,8 @@ SceneBody parse_body(const std::string& name, const DocValue& value);
 ScenePin parse_pin(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneAttachment parse_attachment(const std::string& name, const DocValue& value,
                                  const BodyNames& bodies);
+SceneDistance parse_distance(const std::string& name, const DocValue& value,
+                             const BodyNames& bodies);
 SceneForce parse_force(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneProbe parse_probe(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneObstacle parse_obstacle(const std::string& name, const DocValue& value);

@@ -121,17 +121,17 @@ void respond(const Model& model, Workspace& workspace, double h, State& state,
 void enforce_limits(const Model& model, const Workspace& workspace, double h, State& state,
                     VerletReport& report) {
   const std::vector<Vec3> predicted = state.position;
-  Index moved = 1;
-  while (moved > 0 && report.limit_sweeps < model.limit_sweeps) {
-    moved = sweep_limits(model, state.position);
-    if (moved > 0) {
+  LimitSweep sweep{1, 1};
+  while (sweep.over > 0 && report.limit_sweeps < model.limit_sweeps) {
+    sweep = sweep_limits(model, state.position);
+    if (sweep.moved > 0) {
       ++report.limit_sweeps;
       if (model.ground) lift_onto_ground(model, state.position);
     }
   }
   if (report.limit_sweeps == 0) return;
   report.limits_met =
-      moved == 0 || measure_limit_violation(model, state.position) <= model.limit_tolerance;
+      sweep.over == 0 || measure_limit_violation(model, state.position) <= model.limit_tolerance;
 
   follow_positions(model, workspace, predicted, h, state);
 }
