@@ -25,6 +25,12 @@ SceneGround parse_ground(const DocValue& value);
 SceneContact parse_contact(const DocValue& value);
 SceneOutput parse_output(const DocValue& value);
 
+// parse_scene() for a tree.
+Scene parse_tree(DocValue document, const std::string& file_name, const std::filesystem::path& base,
+                 const std::vector<std::string>& overrides);
+// The whole text of a file; `kind` names it in messages: "scene".
+std::string read_scene_text(const std::filesystem::path& file, std::string_view kind);
+
 // Throws where the table lacks a key that it cannot do without.
 void require(const Reader& reader, std::string_view key);
 // The selection under `key` of the reader's table, which has to be there.
