@@ -51,6 +51,31 @@ TEST(Limits, HeldEndsStay) {
   EXPECT_NEAR(x[1].x(), 1.1, 1e-15);
 }
 
+TEST(Limits, ADistanceIsKeptExactlyHoweverLittleItIsOff) {
+  Model m = point_masses({{Vec3(0, 0, 0), 1.0}, {Vec3(1, 0, 0), 3.0}});
+  add_distance(m, 0, 1, 1.0, false);
+  finish(m);
+  for (const double length : {1.0001, 0.9999, 1.2, 0.5}) {
+    std::vector<Vec3> x = {Vec3(0, 0, 0), Vec3(0, length, 0)};
+    const LimitSweep sweep = sweep_limits(m, x);
+    EXPECT_EQ(sweep.moved, 1);
+    EXPECT_EQ(sweep.over, std::abs(length - 1.0) > m.limit_tolerance ? 1 : 0);
+    EXPECT_NEAR((x[1] - x[0]).norm(), 1.0, 1e-15);
+    EXPECT_NEAR(x[0].y() + 3.0 * x[1].y(), 3.0 * length, 1e-15);
+  }
+}
+
+TEST(Limits, ARopeMayBeSlack) {
+  Model m = point_masses({{Vec3(0, 0, 0), 0.0}, {Vec3(1, 0, 0), 1.0}});
+  add_distance(m, 0, 1, 1.0, true);
+  finish(m);
+  std::vector<Vec3> x = {Vec3(0, 0, 0), Vec3(0.3, 0, 0)};
+  EXPECT_EQ(sweep_limits(m, x).moved, 0);
+  x[1].x() = 1.0001;
+  EXPECT_EQ(sweep_limits(m, x).moved, 1);
+  EXPECT_NEAR(x[1].x(), 1.0, 1e-15);
+}
+
 TEST(Limits, SweepsKeepTheCentreOfMassAndReachTheTolerance) {
   Material material;
   material.stretch_limit = 0.1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/contact/nearest.h"
 #include "sinew/forces/ties.h"
 #include "sinew/mesh/surface.h"
 
@@ -36,9 +37,10 @@ class PlaceFinder {
     const Place* best = nullptr;
     double least = std::numeric_limits<double>::infinity();
     const auto look = [&](const Place& p) {  // false: none further out can be nearer
-      const Vec3 there = nearest_on_triangle(point, x_[uz(p.triangle[0])], x_[uz(p.triangle[1])],
-                                             x_[uz(p.triangle[2])]);
-      const double distance = (there - point).norm();
+      const double distance =
+          std::sqrt(nearest_on_triangle(point, x_[uz(p.triangle[0])], x_[uz(p.triangle[1])],
+                                        x_[uz(p.triangle[2])])
+                        .distance2);
       if (distance < least) {
         best = &p;
         least = distance;
@@ -96,32 +98,6 @@ std::vector<double> resistance(const Model& model) {
 }
 
 }  // namespace
-
-// By the regions of the plane that the triangle's corners, edges and inside are nearest to
-// (Ericson, Real-Time Collision Detection, 5.1.5).
-Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 ab = b - a;
-  const Vec3 ac = c - a;
-  const double d1 = ab.dot(p - a);
-  const double d2 = ac.dot(p - a);
-  if (d1 <= 0.0 && d2 <= 0.0) return a;
-  const double d3 = ab.dot(p - b);
-  const double d4 = ac.dot(p - b);
-  if (d3 >= 0.0 && d4 <= d3) return b;
-  const double vc = d1 * d4 - d3 * d2;
-  if (vc <= 0.0 && d1 >= 0.0 && d3 <= 0.0) return a + d1 / (d1 - d3) * ab;
-  const double d5 = ab.dot(p - c);
-  const double d6 = ac.dot(p - c);
-  if (d6 >= 0.0 && d5 <= d6) return c;
-  const double vb = d5 * d2 - d1 * d6;
-  if (vb <= 0.0 && d2 >= 0.0 && d6 <= 0.0) return a + d2 / (d2 - d6) * ac;
-  const double va = d3 * d6 - d5 * d4;
-  if (va <= 0.0 && d4 >= d3 && d5 >= d6) {
-    return b + (d4 - d3) / ((d4 - d3) + (d5 - d6)) * (c - b);
-  }
-  const double scale = 1.0 / (va + vb + vc);
-  return a + vb * scale * ab + vc * scale * ac;
-}
 
 Surroundings glue_nodes(Model& model, const std::vector<Index>& nodes, const PlacedBody& to,
                         const std::vector<Index>& targets, double within, double stiffness) {

@@ -24,7 +24,4 @@ struct Surroundings {
 Surroundings glue_nodes(Model& model, const std::vector<Index>& nodes, const PlacedBody& to,
                         const std::vector<Index>& targets, double within, double stiffness);
 
-// The point of the triangle a b c nearest to p [m].
-Vec3 nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c);
-
 }  // namespace sinew

@@ -186,7 +186,7 @@ SceneBody parse_body(const std::string& name, const DocValue& value) {
   body.name = name;
   body.where = reader.where();
   parse_source(reader, body);
-  reader.number("scale", body.scale);
+  body.scale_given = reader.number("scale", body.scale);
   reader.boolean("center", body.center);
   body.rotation = parse_rotation(reader);
   reader.point("position", body.position);

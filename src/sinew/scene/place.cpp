@@ -180,8 +180,9 @@ PlacedBody place(const Scene& scene, const SceneBody& body) {
   refine(placed);
   move_to_world(placed);
   const double volume = checked_volume(placed);
-  if (const auto warning = size_warning(volume, placed.high - placed.low, body.scale))
-    placed.warnings.push_back(*warning);
+  const bool said_to_be_metres = body.scale_given && body.scale == 1.0;
+  const auto warning = size_warning(volume, placed.high - placed.low, body.scale);
+  if (warning && !said_to_be_metres) placed.warnings.push_back(*warning);
   return placed;
 }
 

@@ -75,6 +75,7 @@ struct SceneBody {
   int refine = 0;                         // times that every tet is cut into eight
   // Placement: x = position + R(rotation) (scale (X - origin))
   double scale = 1.0;   // metres per mesh unit
+  bool scale_given = false;
   bool center = false;  // origin: the mesh's centroid (by volume)
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Vec3 position = Vec3::Zero();  // [m]
