@@ -10,8 +10,7 @@ inline void add_framework_options(CLI::App& command, sinew::FrameworkOptions& op
   const std::string group = "Scenes of the course framework";
   command
       .add_option_function<std::string>(
-          "--constraints",
-          [&options](const std::string& file) { options.constraints = file; },
+          "--constraints", [&options](const std::string& file) { options.constraints = file; },
           "File of distance constraints")
       ->type_name("FILE")
       ->group(group);

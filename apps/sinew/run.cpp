@@ -102,7 +102,8 @@ int supervise(const Arguments& a, const std::string& title, fs::path out, const 
 void add_run(CLI::App& app, int& status) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("run", "Run a scene into a folder");
-  command->add_option("SCENE", a->scene, "Scene file (TOML, or of the course framework)")->required();
+  command->add_option("SCENE", a->scene, "Scene file (TOML, or of the course framework)")
+      ->required();
   command->add_option("-o,--out", a->out, "Folder to write; default out/NAME, numbered if taken");
   command->add_option("--set", a->set, "Override a value: --set dt=1e-4 --set beam.young=1.5e6")
       ->allow_extra_args(false)

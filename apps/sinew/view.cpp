@@ -157,7 +157,8 @@ void add_view(CLI::App& app, int& status) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command =
       app.add_subcommand("view", "Show a scene live in the browser: watch it, pull it, change it");
-  command->add_option("SCENE", a->scene, "Scene file (TOML, or of the course framework) or mesh; none: the gallery");
+  command->add_option("SCENE", a->scene,
+                      "Scene file (TOML, or of the course framework) or mesh; none: the gallery");
   command->add_option("--scenes", a->scenes, "Folder of the gallery's scenes")
       ->type_name("DIR")
       ->default_str("those that come with Sinew");

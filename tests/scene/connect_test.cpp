@@ -215,10 +215,9 @@ TEST(Distance, MistakesAreNamed) {
   EXPECT_NE(parse_error(scene + "select = { nodes = [0] }\n")
                 .find("[distance.rod] has neither a point nor to_select"),
             std::string::npos);
-  EXPECT_NE(
-      parse_error(scene + "select = { nodes = [0] }\npoint = [0, 9, 0]\nto_body = \"two\"\n")
-          .find("'to_body' in [distance.rod] goes with to_select"),
-      std::string::npos);
+  EXPECT_NE(parse_error(scene + "select = { nodes = [0] }\npoint = [0, 9, 0]\nto_body = \"two\"\n")
+                .find("'to_body' in [distance.rod] goes with to_select"),
+            std::string::npos);
   EXPECT_NE(build_error(scene + "select = { nodes = [0] }\nto_select = { nodes = [0] }\n")
                 .find("[distance.rod] is between a node and itself, at one and the same place"),
             std::string::npos);

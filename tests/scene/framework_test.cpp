@@ -109,12 +109,11 @@ TEST(Framework, ConstraintsGoByTheVerticesOfTheFiles) {
   const auto s = uz(m.first_attachment);
   ASSERT_EQ(m.springs.size(), s + 3);
   const Index kite = m.bodies[1].nodes.begin;
-  EXPECT_EQ(m.springs[s], (Edge{7, kite + 1}));                       // vertex 2 is its node 1
-  EXPECT_EQ(m.springs[s + 1][0], kite + 4);                           // vertex 5
+  EXPECT_EQ(m.springs[s], (Edge{7, kite + 1}));  // vertex 2 is its node 1
+  EXPECT_EQ(m.springs[s + 1][0], kite + 4);      // vertex 5
   EXPECT_EQ(m.rest_position[uz(m.springs[s + 1][1])], Vec3(100, 0, -100));  // corner 3
   EXPECT_EQ(m.springs[s + 2], (Edge{m.bodies[2].nodes.begin, kite}));
-  EXPECT_NEAR(m.rest_length[s],
-              (m.rest_position[7] - m.rest_position[uz(kite) + 1]).norm(), 1e-12);
+  EXPECT_NEAR(m.rest_length[s], (m.rest_position[7] - m.rest_position[uz(kite) + 1]).norm(), 1e-12);
 }
 
 TEST(Framework, ReadsBackFromItsDocumentAndTakesOverrides) {
@@ -122,8 +121,8 @@ TEST(Framework, ReadsBackFromItsDocumentAndTakesOverrides) {
   const Scene again = parse_scene(s.document, "again.toml", kFolder);
   EXPECT_EQ(again.document, s.document);
   EXPECT_EQ(build_model(again).hash(), build_model(s).hash());
-  const Scene set = read("1\nblock.mesh 1 1e5 0.3 0 0 9 0 1 0 0 0\n", {}, {},
-                         {"block-1.young=5", "duration=3"});
+  const Scene set =
+      read("1\nblock.mesh 1 1e5 0.3 0 0 9 0 1 0 0 0\n", {}, {}, {"block-1.young=5", "duration=3"});
   EXPECT_EQ(set.bodies[0].material.young, 5.0);
   EXPECT_EQ(set.duration, 3.0);
 }
@@ -136,7 +135,8 @@ TEST(Framework, SurfacesAreFittedAndFilled) {
 }
 
 TEST(Framework, AMaterialOfNothingNeedsAFlag) {
-  const char* scene = "2\nblock.mesh 1 0 0 0 0 9 0 1 0 0 0\nblock.mesh 2 3e5 0.1 0 0 19 0 1 0 0 0\n";
+  const char* scene =
+      "2\nblock.mesh 1 0 0 0 0 9 0 1 0 0 0\nblock.mesh 2 3e5 0.1 0 0 19 0 1 0 0 0\n";
   const std::string message = refused(scene);
   EXPECT_TRUE(has(message, "x-scene.txt:2:14: object 1, block.mesh, has a Young's modulus of 0"))
       << message;
@@ -212,8 +212,7 @@ TEST(Framework, MistakesInConstraintsNameThePlace) {
   const char* scene = "1\nblock.mesh 1 1e5 0.3 0 0 9 0 1 0 0 0\n";
   for (const Bad& bad : std::vector<Bad>{
            {"a", "x-constraints.txt:1:1: expected the number of constraints (a whole number)"},
-           {"1\n1 0 2 0\n",
-            "x-constraints.txt:2:5: mesh 2 of constraint 1 is 2; expected 0 to 1"},
+           {"1\n1 0 2 0\n", "x-constraints.txt:2:5: mesh 2 of constraint 1 is 2; expected 0 to 1"},
            {"1\n1 0 0 8\n",
             "x-constraints.txt:2:7: vertex 2 of constraint 1 is 8; expected 0 to 7"},
            {"1\n1 8 0 0\n",
@@ -221,23 +220,22 @@ TEST(Framework, MistakesInConstraintsNameThePlace) {
             "'block-1' has nodes 0 to 7"},
            {"2\n1 0 0 0\n1 2\n",
             "x-constraints.txt:4: expected mesh 2 of constraint 2 (a whole number), the file ends"},
-           {"1\n1 3 1 3\n",
-            "x-constraints.txt:2:1: [distance.row-1] is between a node and itself"},
+           {"1\n1 3 1 3\n", "x-constraints.txt:2:1: [distance.row-1] is between a node and itself"},
        }) {
-    EXPECT_TRUE(has(refused(scene, {}, bad.scene), bad.message))
-        << bad.scene << "\n"
-        << refused(scene, {}, bad.scene);
+    EXPECT_TRUE(has(refused(scene, {}, bad.scene), bad.message)) << bad.scene << "\n"
+                                                                 << refused(scene, {}, bad.scene);
   }
 }
 
 TEST(Framework, WhatIsPassedOverIsSaid) {
-  const Scene s = read("1\nblock.mesh 1 1e5 0.3 0 0 -9 120 1 0 0 0\nand more\n", {},
-                       "1\n0 1 0 2\n1 1 1 1\n");
+  const Scene s =
+      read("1\nblock.mesh 1 1e5 0.3 0 0 -9 120 1 0 0 0\nand more\n", {}, "1\n0 1 0 2\n1 1 1 1\n");
   ASSERT_EQ(s.warnings.size(), 5u);
   EXPECT_TRUE(has(s.warnings[0], "x-scene.txt:2: the object starts beside the platform"));
   EXPECT_TRUE(has(s.warnings[1], "x-scene.txt:2: the object starts below the platform's top"));
   EXPECT_TRUE(has(s.warnings[2], "2 more words from line 3 on are left out"));
-  EXPECT_TRUE(has(s.warnings[3], "x-constraints.txt:2: the constraint ties the platform to itself"));
+  EXPECT_TRUE(
+      has(s.warnings[3], "x-constraints.txt:2: the constraint ties the platform to itself"));
   EXPECT_TRUE(has(s.warnings[4], "4 more words from line 3 on are left out"));
 }
 
@@ -255,9 +253,8 @@ TEST(Framework, IsKnownByItsFirstWord) {
                   "--constraints, --young, --poisson and --restitution go with a scene of the "
                   "course framework"));
   options.constraints = "none.txt";
-  EXPECT_TRUE(
-      has(error_of([&] { load_framework_scene(kFolder / "three-scene.txt", options); }),
-          "none.txt: there is no such constraints file"));
+  EXPECT_TRUE(has(error_of([&] { load_framework_scene(kFolder / "three-scene.txt", options); }),
+                  "none.txt: there is no such constraints file"));
 }
 
 TEST(Framework, NumbersAreReadAsStreamsDo) {

@@ -68,8 +68,7 @@ TEST(Distances, APendulumOfImplicitStepsHasItsPeriod) {
   State s = initial_state(m);
   ImplicitStepper stepper(m);
   const double h = 0.01;
-  const double period =
-      measured_period(h, m, s, [&](State& state) { stepper.step(h, {}, state); });
+  const double period = measured_period(h, m, s, [&](State& state) { stepper.step(h, {}, state); });
   EXPECT_NEAR(period, exact_period(), 0.01 * period);
 }
 

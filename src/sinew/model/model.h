@@ -67,9 +67,10 @@ struct Touch {
 
 // A node that keeps its place in a tet of another body (forces/ties.h): what glue is made of.
 struct Tie {
-  std::array<Index, 5> node = {};     // the node, then the tet's corners
-  std::array<double, 5> weight = {};  // [-] 1, then minus the place's barycentric coordinates: sum 0
-  double stiffness = 0.0;             // [N/m] > 0
+  std::array<Index, 5> node = {};  // the node, then the tet's corners
+  std::array<double, 5> weight =
+      {};                  // [-] 1, then minus the place's barycentric coordinates: sum 0
+  double stiffness = 0.0;  // [N/m] > 0
 };
 
 // Springs of rest length zero from nodes to points that are moved from outside during a run

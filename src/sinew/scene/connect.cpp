@@ -19,9 +19,12 @@ class Connector {
 
   void connect() {
     for (const SceneAttachment& a : scene_.attachments) {
-      if (a.point) attach_to_point(a);
-      else if (a.within) glue(a);
-      else attach_to_body(a);
+      if (a.point)
+        attach_to_point(a);
+      else if (a.within)
+        glue(a);
+      else
+        attach_to_body(a);
     }
     for (const SceneDistance& d : scene_.distances) keep_distance(d);
   }
@@ -57,12 +60,13 @@ class Connector {
     const Surroundings found = glue_nodes(model_, nodes_of(a), to, targets_of(a), *a.within,
                                           a.stiffness_given ? a.stiffness : 0.0);
     if (found.triangles == 0)
-      throw Error(ErrorKind::input,
-                  fmt::format("'to_select' of [attachment.{}] has all three nodes of no triangle of "
-                              "the surface of body '{}'",
-                              a.name, a.to_body),
-                  "glue holds on triangles: select more nodes, or leave to_select out",
-                  a.to_select ? a.to_select->where : a.where);
+      throw Error(
+          ErrorKind::input,
+          fmt::format("'to_select' of [attachment.{}] has all three nodes of no triangle of "
+                      "the surface of body '{}'",
+                      a.name, a.to_body),
+          "glue holds on triangles: select more nodes, or leave to_select out",
+          a.to_select ? a.to_select->where : a.where);
     if (found.tied == 0)
       throw Error(ErrorKind::input,
                   fmt::format("[attachment.{}] glues nothing: the nearest of its nodes is {:.4g} m "
@@ -77,12 +81,12 @@ class Connector {
     const std::string what = fmt::format("'{}' of [distance.{}]", key, d.name);
     const std::vector<Index> nodes = select_in_model(bodies_, body, selection, what);
     if (nodes.size() != 1)
-      throw Error(ErrorKind::input,
-                  fmt::format("{} selects {} nodes of body '{}'; expected one", what, nodes.size(),
-                              body),
-                  "a distance is kept between two nodes: nearest = [x, y, z] selects one, and so "
-                  "does nodes = [3]",
-                  selection.where);
+      throw Error(
+          ErrorKind::input,
+          fmt::format("{} selects {} nodes of body '{}'; expected one", what, nodes.size(), body),
+          "a distance is kept between two nodes: nearest = [x, y, z] selects one, and so "
+          "does nodes = [3]",
+          selection.where);
     return nodes.front();
   }
 
@@ -95,7 +99,7 @@ class Connector {
     if (from == to || (!d.length && start <= 1e-9 * size))
       throw Error(ErrorKind::input,
                   fmt::format("[distance.{}] is between {} at one and the same place", d.name,
-                              from == to   ? "a node and itself,"
+                              from == to    ? "a node and itself,"
                               : d.to_select ? "two nodes"
                                             : "a node and a point"),
                   d.point ? "pin the node, or attach it to the point: [attachment.NAME]"

@@ -97,7 +97,9 @@ std::pair<std::string, std::string> split_message(std::string told) {
   return {told.substr(0, at), told.substr(at + remedy.size())};
 }
 
-void fill(const fs::path& path, const fs::path& out, double size, const Location& where) {
+// `called`: how messages name the file.
+void fill(const fs::path& path, const std::string& called, const fs::path& out, double size,
+          const Location& where) {
   std::vector<std::string> command = {mesher(), path.string(), "-q", "--force", "-o", out.string()};
   if (size > 0) {
     command.insert(command.end(), {"--size", fmt::format("{}", size)});
@@ -110,18 +112,21 @@ void fill(const fs::path& path, const fs::path& out, double size, const Location
         ErrorKind::input,
         fmt::format("{} has to be filled with tetrahedra first, and the program for it, {}, "
                     "cannot be started: {}",
-                    path.string(), command[0],
-                    std::generic_category().message(code < 0 ? -code : ENOENT)),
+                    called, command[0], std::generic_category().message(code < 0 ? -code : ENOENT)),
         "./dev mesh builds it (docs/mesher.md); put it beside sinew or on PATH, or name it in "
         "SINEW_MESH",
         where);
   }
+  const std::string name = path.string();
+  for (std::size_t at = told.find(name); name != called && at != told.npos;
+       at = told.find(name, at + called.size())) {
+    told.replace(at, name.size(), called);
+  }
   const auto [message, remedy] = split_message(std::move(told));
-  throw Error(ErrorKind::input,
-              message.empty()
-                  ? fmt::format("{}: sinew-mesh ended with code {}", path.string(), code)
-                  : message,
-              remedy, where);
+  throw Error(
+      ErrorKind::input,
+      message.empty() ? fmt::format("{}: sinew-mesh ended with code {}", called, code) : message,
+      remedy, where);
 }
 
 // The surface stretched to `fit`, as OFF with all digits.
@@ -208,13 +213,12 @@ TetMesh read_filled(const fs::path& path, double size, const Location& where,
     // Under a name of its own first: two runs may fill the same file at once.
     const fs::path fresh = folder / fmt::format("{}.{}.vtu", hex(hash.digest()), getpid());
     if (stretched) {
-      const fs::path surface =
-          folder / fmt::format("{}.{}.off", hex(hash.digest()), getpid());
+      const fs::path surface = folder / fmt::format("{}.{}.off", hex(hash.digest()), getpid());
       io::write_file(surface, stretched_off(path, *fit, where));
       const Removed removed{surface};
-      fill(surface, fresh, size, where);
+      fill(surface, path.string(), fresh, size, where);
     } else {
-      fill(path, fresh, size, where);
+      fill(path, path.string(), fresh, size, where);
     }
     fs::rename(fresh, kept);
   }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/scene/document.h"
+#include "sinew/scene/document_values.h"
 #include "sinew/scene/filled.h"
 #include "sinew/scene/framework_text.h"
 #include "sinew/scene/parse.h"
@@ -31,61 +31,6 @@ Vec3 platform_corner(std::int64_t i) {
   const std::int64_t side = i % 4;
   return {side < 2 ? -platform_half : platform_half, i < 4 ? 0.0 : -platform_depth,
           side == 0 || side == 3 ? -platform_half : platform_half};
-}
-
-// ---- values of a document, each with its place ----
-
-DocValue value_of(double number, const Location& where) {
-  DocValue value;
-  value.type = DocValue::Type::number;
-  value.number = number;
-  value.where = where;
-  return value;
-}
-
-DocValue value_of(bool boolean, const Location& where) {
-  DocValue value;
-  value.type = DocValue::Type::boolean;
-  value.boolean = boolean;
-  value.where = where;
-  return value;
-}
-
-DocValue value_of(std::string_view text, const Location& where) {
-  DocValue value;
-  value.type = DocValue::Type::text;
-  value.text = text;
-  value.where = where;
-  return value;
-}
-
-DocValue array_of(std::vector<DocValue> items, const Location& where) {
-  DocValue value;
-  value.type = DocValue::Type::array;
-  value.items = std::move(items);
-  value.where = where;
-  return value;
-}
-
-DocValue point_of(const Vec3& p, const Location& where) {
-  return array_of({value_of(p.x(), where), value_of(p.y(), where), value_of(p.z(), where)}, where);
-}
-
-DocValue table_at(const Location& where) {
-  DocValue value;
-  value.where = where;
-  return value;
-}
-
-void add(DocValue& table, std::string key, DocValue value) {
-  const Location where = value.where;
-  table.entries.push_back({std::move(key), std::move(value), where});
-}
-
-DocValue selection(std::string key, DocValue value) {
-  DocValue table = table_at(value.where);
-  add(table, std::move(key), std::move(value));
-  return table;
 }
 
 // Whether TOML can hold the text: it has to be UTF-8.
@@ -175,11 +120,10 @@ class Translator {
     bool flags_used = false;
     for (std::int64_t i = 1; i <= count; ++i) flags_used |= read_object(words, i);
     if (!words.at_end())
-      warnings_.push_back(
-          fmt::format("{}: {} more words from line {} on are left out: the file says that it has {} "
-                      "object{}",
-                      text_.scene_file, words.left(), words.where().line, count,
-                      count == 1 ? "" : "s"));
+      warnings_.push_back(fmt::format(
+          "{}: {} more words from line {} on are left out: the file says that it has {} "
+          "object{}",
+          text_.scene_file, words.left(), words.where().line, count, count == 1 ? "" : "s"));
     if ((options_.young || options_.poisson) && !flags_used)
       warnings_.push_back(
           "every object has a material of its own: --young and --poisson have no effect");
@@ -194,10 +138,9 @@ class Translator {
         ErrorKind::input,
         fmt::format("object {} is in the obsolete short form of {} values, without {}", number,
                     count,
-                    no_material && no_rotation
-                        ? "Young's modulus, Poisson's ratio and a quaternion"
-                    : no_material ? "Young's modulus and Poisson's ratio"
-                                  : "a quaternion"),
+                    no_material && no_rotation ? "Young's modulus, Poisson's ratio and a quaternion"
+                    : no_material              ? "Young's modulus and Poisson's ratio"
+                                               : "a quaternion"),
         fmt::format("write all 12: {}; no rotation is 1 0 0 0", object_layout), words.where());
   }
 
@@ -298,10 +241,10 @@ class Translator {
       warnings_.push_back(fmt::format("{}: it says that it has {} constraints and has {}",
                                       text_.constraints_file, count, row - 1));
     if (!words.at_end())
-      warnings_.push_back(
-          fmt::format("{}: {} more words from line {} on are left out: the file says that it has {} "
-                      "constraints",
-                      text_.constraints_file, words.left(), words.where().line, count));
+      warnings_.push_back(fmt::format(
+          "{}: {} more words from line {} on are left out: the file says that it has {} "
+          "constraints",
+          text_.constraints_file, words.left(), words.where().line, count));
   }
 
   struct End {
@@ -326,16 +269,7 @@ class Translator {
   }
 
   DocValue vertex_of(const End& end) const {
-    return selection("nodes",
-                     array_of({value_of_integer(end.vertex, end.where)}, end.where));
-  }
-
-  static DocValue value_of_integer(std::int64_t integer, const Location& where) {
-    DocValue value;
-    value.type = DocValue::Type::integer;
-    value.integer = integer;
-    value.where = where;
-    return value;
+    return selection("nodes", array_of({value_of(end.vertex, end.where)}, end.where));
   }
 
   const std::string& name_of(const End& end) const {
@@ -348,9 +282,10 @@ class Translator {
     End to = read_end(words, row, 2);
     if (from.mesh == 0) std::swap(from, to);
     if (from.mesh == 0) {
-      warnings_.push_back(fmt::format("{}:{}: the constraint ties the platform to itself; it is "
-                                      "left out",
-                                      text_.constraints_file, where.line));
+      warnings_.push_back(
+          fmt::format("{}:{}: the constraint ties the platform to itself; it is "
+                      "left out",
+                      text_.constraints_file, where.line));
       return;
     }
     DocValue distance = table_at(where);

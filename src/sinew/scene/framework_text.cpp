@@ -41,8 +41,8 @@ FrameworkWords::FrameworkWords(std::string_view text, std::string file, std::str
     const std::size_t begin = i;
     while (i < text.size() && !is_blank(text[i])) ++i;
     words_.push_back({text.substr(begin, i - begin), line,
-                      static_cast<int>(std::min<std::size_t>(
-                          begin - line_start + 1, std::numeric_limits<int>::max()))});
+                      static_cast<int>(std::min<std::size_t>(begin - line_start + 1,
+                                                             std::numeric_limits<int>::max()))});
   }
   last_line_ = line;
 }

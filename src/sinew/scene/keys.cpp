@@ -280,9 +280,9 @@ const Key* KeyTable::find(std::string_view key) const {
 }
 
 std::vector<const KeyTable*> KeyTables::all() const {
-  return {&scene, &body,   &material,   &region, &motion,     &key_frame, &select,
-          &box,   &sphere, &half_space, &pin,    &attachment, &distance,  &force,
-          &probe, &obstacle, &ground, &contact, &output};
+  return {&scene, &body,     &material,   &region,  &motion,     &key_frame, &select,
+          &box,   &sphere,   &half_space, &pin,     &attachment, &distance,  &force,
+          &probe, &obstacle, &ground,     &contact, &output};
 }
 
 const KeyTables& key_tables() {

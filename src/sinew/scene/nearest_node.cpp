@@ -15,9 +15,8 @@ NearestNode::NearestNode(std::span<const Vec3> x, std::vector<Index> nodes)
 
 // From the place of the point's x outwards, until x alone is too far.
 Index NearestNode::operator()(const Vec3& point) const {
-  const auto start =
-      std::lower_bound(nodes_.begin(), nodes_.end(), point.x(),
-                       [&](Index node, double x) { return x_[uz(node)].x() < x; });
+  const auto start = std::lower_bound(nodes_.begin(), nodes_.end(), point.x(),
+                                      [&](Index node, double x) { return x_[uz(node)].x() < x; });
   Index best = -1;
   double best_distance = std::numeric_limits<double>::infinity();
   const auto closer = [&](Index node) {  // false: no node further out can be nearer

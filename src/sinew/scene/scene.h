@@ -74,7 +74,7 @@ struct SceneBody {
   int resolution = 4;                     // round shapes: shells
   int refine = 0;                         // times that every tet is cut into eight
   // Placement: x = position + R(rotation) (scale (X - origin))
-  double scale = 1.0;   // metres per mesh unit
+  double scale = 1.0;  // metres per mesh unit
   bool scale_given = false;
   bool center = false;  // origin: the mesh's centroid (by volume)
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
@@ -214,7 +214,7 @@ struct Scene {
   std::vector<SceneProbe> probes;
   std::vector<SceneObstacle> obstacles;
 
-  std::string file;      // the file it came from, for messages
+  std::string file;                   // the file it came from, for messages
   std::vector<std::string> warnings;  // what a user should know about how it was read
   std::string document;  // the whole scene as TOML with every override in it; parses to this scene
   std::string base;      // folder that relative mesh paths start from
