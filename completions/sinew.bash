@@ -11,6 +11,11 @@ _sinew_files() {  # words that end like this, and folders to go on into
   compopt -o filenames 2>/dev/null
 }
 
+_sinew_scenes() {  # of both kinds, and what else is named
+  _sinew_files toml "$@"
+  mapfile -t -O "${#COMPREPLY[@]}" COMPREPLY < <(compgen -f -X "!*-scene.txt" -- "$cur")
+}
+
 _sinew_words() {
   mapfile -t COMPREPLY < <(compgen -W "$1" -- "$cur")
 }
@@ -47,6 +52,11 @@ _sinew() {
       return
       ;;
     identify:--young | identify:--poisson | identify:--density | identify:--damping-ratio) return ;;
+    run:--constraints | view:--constraints)
+      _sinew_files txt
+      return
+      ;;
+    run:--young | run:--poisson | run:--restitution | view:--young | view:--poisson | view:--restitution) return ;;
     bench:--json | bench:--peer | view:--scenes)
       _sinew_files '*'
       return
@@ -54,13 +64,13 @@ _sinew() {
     *:--meshes | *:--filter | *:--seconds | *:--threads | *:--set | *:--scale | *:--levels | *:--port | *:--host) return ;;
   esac
   case ${COMP_WORDS[1]}:$cur in
-    run:-*) _sinew_words "-o --out --set --force --no-output --json -q --quiet --threads --help" ;;
-    view:-*) _sinew_words "--scenes --port --open --host --set -q --quiet --threads --help" ;;
-    view:*) _sinew_files toml "${meshes[@]}" ;;
+    run:-*) _sinew_words "-o --out --set --constraints --young --poisson --restitution --force --no-output --json -q --quiet --threads --help" ;;
+    view:-*) _sinew_words "--scenes --port --open --host --set --constraints --young --poisson --restitution -q --quiet --threads --help" ;;
+    view:*) _sinew_scenes "${meshes[@]}" ;;
     resume:-*) _sinew_words "--json -q --quiet --threads --help" ;;
     info:-*) _sinew_words "--scale --json --help" ;;
     convert:-*) _sinew_words "--scale --repair --format --force --help" ;;
-    run:*) _sinew_files toml ;;
+    run:*) _sinew_scenes ;;
     resume:*) _sinew_files ;;
     identify:-*) _sinew_words "--young --poisson --law --density --damping-ratio --scale --html --json -q --quiet --help" ;;
     info:* | convert:* | identify:*) _sinew_files "${meshes[@]}" ;;

@@ -47,7 +47,11 @@ _sinew() {
             '(-q --quiet)'{-q,--quiet}'[Print errors only]' \
             '--threads[Threads to use]:count:' \
             '--help[Show help]' \
-            '1:scene:_files -g "*.toml(-.)"'
+            '--constraints[Constraints of a course framework scene]:file:_files' \
+            '--young[Young modulus of objects that have none, Pa]:number:' \
+            '--poisson[Poisson ratio of the same objects]:number:' \
+            '--restitution[Of platform and objects, 0 to 1]:number:' \
+            '1:scene:_files -g "(*.toml|*-scene.txt)(-.)"'
           ;;
         resume)
           _arguments '--json[Print summary.json]' \
@@ -65,7 +69,11 @@ _sinew() {
             '(-q --quiet)'{-q,--quiet}'[Print the address and errors only]' \
             '--threads[Threads to use]:count:' \
             '--help[Show help]' \
-            '1:scene:_files -g "(*.toml|$meshes)(-.)"'
+            '--constraints[Constraints of a course framework scene]:file:_files' \
+            '--young[Young modulus of objects that have none, Pa]:number:' \
+            '--poisson[Poisson ratio of the same objects]:number:' \
+            '--restitution[Of platform and objects, 0 to 1]:number:' \
+            '1:scene:_files -g "(*.toml|*-scene.txt|$meshes)(-.)"'
           ;;
         info)
           _arguments '--scale[Factor from the unit of the file to metres]:factor:' \

@@ -9,6 +9,7 @@
 #include <filesystem>
 
 #include "commands.h"
+#include "framework_options.h"
 #include "progress.h"
 #include "sinew/base/parallel.h"
 
@@ -29,6 +30,7 @@ struct Arguments {
   std::string scene;
   std::string out;
   std::vector<std::string> set;
+  FrameworkOptions framework;
   bool json = false;
   bool quiet = false;
   bool force = false;
@@ -100,7 +102,8 @@ int supervise(const Arguments& a, const std::string& title, fs::path out, const 
 void add_run(CLI::App& app, int& status) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand("run", "Run a scene into a folder");
-  command->add_option("SCENE", a->scene, "Scene file (TOML)")->required();
+  command->add_option("SCENE", a->scene, "Scene file (TOML, or of the course framework)")
+      ->required();
   command->add_option("-o,--out", a->out, "Folder to write; default out/NAME, numbered if taken");
   command->add_option("--set", a->set, "Override a value: --set dt=1e-4 --set beam.young=1.5e6")
       ->allow_extra_args(false)
@@ -108,13 +111,16 @@ void add_run(CLI::App& app, int& status) {
   command->add_flag("--force", a->force, "Replace a run that --out already holds");
   command->add_flag("--no-output", a->no_output, "Write no folder, only report");
   add_common(*command, *a);
+  add_framework_options(*command, a->framework);
   command->footer(R"(
 Examples:
   sinew run scenes/liver.toml
   sinew run scenes/liver.toml --out sag --set liver.young=20e3 --set duration=4
-  sinew run scenes/beam.toml --set beam.law=vangelder --json --no-output | jq .probes.tip)");
+  sinew run scenes/beam.toml --set beam.law=vangelder --json --no-output | jq .probes.tip
+  sinew run bunny-scene.txt --restitution 0.5 --set duration=3
+  sinew run tower_chain-scene.txt --constraints tower_chain-constraints.txt --young 1e6)");
   command->callback([a, &status] {
-    const Scene scene = load_scene(a->scene, a->set);
+    const Scene scene = load_framework_scene(a->scene, a->framework, a->set);
     fs::path out;
     if (!a->no_output) out = a->out.empty() ? fresh_folder(scene.name) : fs::path(a->out);
     status = supervise(*a, scene.name, out,

@@ -12,6 +12,7 @@
 #include <thread>
 
 #include "commands.h"
+#include "framework_options.h"
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/scene/around.h"
@@ -33,12 +34,14 @@ Examples:
   sinew view scenes/liver.toml
   sinew view organ.vtu
   sinew view scenes/liver.toml --set liver.young=20e3 --open
+  sinew view two_cylinder-scene.txt --constraints two_cylinder-constraints.txt
   sinew view scenes/beam.toml --host 0.0.0.0     for other machines, with the printed token)";
 
 struct Arguments {
   std::string scene;   // empty: the gallery
   std::string scenes;  // its folder; empty: where it usually is
   std::vector<std::string> set;
+  FrameworkOptions framework;
   std::string host = "127.0.0.1";
   int port = 8650;
   bool open = false, quiet = false;
@@ -138,7 +141,7 @@ int view(const Arguments& a) {
   options.scenes = a.scenes.empty() ? find_scenes() : std::filesystem::path(a.scenes);
   options.gallery = a.scene.empty();
   const std::string scene = a.scene.empty() ? first_scene(options.scenes) : a.scene;
-  server::Server server(options, load_scene_or_mesh(scene, a.set));
+  server::Server server(options, load_scene_or_mesh(scene, a.set, a.framework));
   const StopOnSignal stop(server);
   fmt::print("{}\n", server.url());
   if (!a.quiet) fmt::print("Open it in a browser. Ctrl-C ends.\n");
@@ -154,7 +157,8 @@ void add_view(CLI::App& app, int& status) {
   auto a = std::make_shared<Arguments>();
   CLI::App* command =
       app.add_subcommand("view", "Show a scene live in the browser: watch it, pull it, change it");
-  command->add_option("SCENE", a->scene, "Scene file (TOML) or mesh; none: the gallery");
+  command->add_option("SCENE", a->scene,
+                      "Scene file (TOML, or of the course framework) or mesh; none: the gallery");
   command->add_option("--scenes", a->scenes, "Folder of the gallery's scenes")
       ->type_name("DIR")
       ->default_str("those that come with Sinew");
@@ -173,6 +177,7 @@ void add_view(CLI::App& app, int& status) {
   command->add_option("--threads", a->threads, "Threads to use; the result does not depend on it")
       ->check(CLI::Range(0, 1024))
       ->default_str("all");
+  add_framework_options(*command, a->framework);
   command->footer(kFooter);
   command->callback([a, &status] { status = view(*a); });
 }

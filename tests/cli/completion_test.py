@@ -52,6 +52,8 @@ class CompletionTest(CliTest):
         self.write("liver.mesh", "")
         self.assertEqual(self.complete("res"), ["resume"])
         self.assertEqual(self.complete("run", "scenes/"), ["scenes/liver.toml"])
+        self.write("framework/chain-scene.txt", "")
+        self.assertEqual(self.complete("run", "framework/"), ["framework/chain-scene.txt"])
         self.assertEqual(self.complete("run", "--o"), ["--out"])
         self.assertEqual(self.complete("info", "l"), ["liver.mesh"])
 

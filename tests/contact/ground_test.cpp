@@ -31,7 +31,7 @@ struct Ball {
     state.half_velocity[0] += 0.5 * (state.last_step + h) * Vec3(0, -g, 0);
     state.position[0] += h * state.half_velocity[0];
     std::vector<Contact> found;
-    find_ground_contacts(model, state.position, found);
+    find_ground_contacts(model, state.position, 0.0, found);
     const ContactReport r = respond_to_contacts(model, found, force, h, state);
     contacts += r.contacts;
     dissipated += r.dissipated;

@@ -18,14 +18,14 @@ TEST(Limits, OneSpringGoesExactlyOntoItsLimitByInverseMasses) {
   // Stretched to 1.5: 0.4 too long; the light end takes 3/4 of it.
   std::vector<Vec3> x = {Vec3(0, 0, 0), Vec3(1.5, 0, 0)};
   EXPECT_NEAR(measure_limit_violation(m, x), 0.4, 1e-15);
-  EXPECT_EQ(sweep_limits(m, x), 1);
+  EXPECT_EQ(sweep_limits(m, x).moved, 1);
   EXPECT_NEAR(x[0].x(), 0.3, 1e-15);
   EXPECT_NEAR(x[1].x(), 1.4, 1e-15);
   EXPECT_NEAR(measure_limit_violation(m, x), 0.0, 1e-15);
-  EXPECT_EQ(sweep_limits(m, x), 0);
+  EXPECT_EQ(sweep_limits(m, x).moved, 0);
   // Compressed to 0.5: 0.3 too short.
   x = {Vec3(0, 0, 0), Vec3(0, 0.5, 0)};
-  EXPECT_EQ(sweep_limits(m, x), 1);
+  EXPECT_EQ(sweep_limits(m, x).moved, 1);
   EXPECT_NEAR((x[1] - x[0]).norm(), 0.8, 1e-15);
   EXPECT_NEAR(x[0].y(), -0.225, 1e-15);
 }
@@ -36,7 +36,7 @@ TEST(Limits, WithinTheLimitsNothingMoves) {
   finish(m);
   for (const double length : {0.81, 1.0, 1.09}) {
     std::vector<Vec3> x = {Vec3(0, 0, 0), Vec3(length, 0, 0)};
-    EXPECT_EQ(sweep_limits(m, x), 0);
+    EXPECT_EQ(sweep_limits(m, x).moved, 0);
     EXPECT_EQ(x[1].x(), length);
   }
 }
@@ -49,6 +49,31 @@ TEST(Limits, HeldEndsStay) {
   sweep_limits(m, x);
   EXPECT_EQ(x[0], Vec3::Zero());
   EXPECT_NEAR(x[1].x(), 1.1, 1e-15);
+}
+
+TEST(Limits, ADistanceIsKeptExactlyHoweverLittleItIsOff) {
+  Model m = point_masses({{Vec3(0, 0, 0), 1.0}, {Vec3(1, 0, 0), 3.0}});
+  add_distance(m, 0, 1, 1.0, false);
+  finish(m);
+  for (const double length : {1.0001, 0.9999, 1.2, 0.5}) {
+    std::vector<Vec3> x = {Vec3(0, 0, 0), Vec3(0, length, 0)};
+    const LimitSweep sweep = sweep_limits(m, x);
+    EXPECT_EQ(sweep.moved, 1);
+    EXPECT_EQ(sweep.over, std::abs(length - 1.0) > m.limit_tolerance ? 1 : 0);
+    EXPECT_NEAR((x[1] - x[0]).norm(), 1.0, 1e-15);
+    EXPECT_NEAR(x[0].y() + 3.0 * x[1].y(), 3.0 * length, 1e-15);
+  }
+}
+
+TEST(Limits, ARopeMayBeSlack) {
+  Model m = point_masses({{Vec3(0, 0, 0), 0.0}, {Vec3(1, 0, 0), 1.0}});
+  add_distance(m, 0, 1, 1.0, true);
+  finish(m);
+  std::vector<Vec3> x = {Vec3(0, 0, 0), Vec3(0.3, 0, 0)};
+  EXPECT_EQ(sweep_limits(m, x).moved, 0);
+  x[1].x() = 1.0001;
+  EXPECT_EQ(sweep_limits(m, x).moved, 1);
+  EXPECT_NEAR(x[1].x(), 1.0, 1e-15);
 }
 
 TEST(Limits, SweepsKeepTheCentreOfMassAndReachTheTolerance) {
@@ -67,7 +92,7 @@ TEST(Limits, SweepsKeepTheCentreOfMassAndReachTheTolerance) {
   };
   const Vec3 before = center();
   int sweeps = 0;
-  while (sweep_limits(m, x) > 0 && sweeps < 500) ++sweeps;
+  while (sweep_limits(m, x).over > 0 && sweeps < 500) ++sweeps;
   EXPECT_LT(sweeps, 500);
   EXPECT_LE(measure_limit_violation(m, x), 1e-3);
   EXPECT_LT((center() - before).norm(), 1e-15);

@@ -1,13 +1,25 @@
 #include "sinew/contact/find.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 #include "sinew/contact/colliders.h"
 #include "sinew/contact/surfaces.h"
 
 namespace sinew {
+namespace {
+
+// Of the size of a mean tet: far more than what a step at rest moves, far less than what is seen.
+constexpr double reach_share = 1e-3;
+
+}  // namespace
 
 ContactFinder::ContactFinder(const Model& model) : model_(model) {
+  const double mean_volume =
+      std::accumulate(model.rest_volume.begin(), model.rest_volume.end(), 0.0) /
+      std::max(1.0, static_cast<double>(model.tet_count()));
+  explicit_reach_ = reach_share * std::cbrt(mean_volume);
   if (!model.surface.triangles.empty()) surfaces_ = std::make_unique<SurfaceContacts>(model);
 }
 

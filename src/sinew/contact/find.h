@@ -20,6 +20,9 @@ class ContactFinder {
   // Whether the model has anything but the ground that can touch.
   static bool anything_to_find(const Model& model);
 
+  // The gap below which contacts take part in an explicit step [m].
+  double explicit_reach() const { return explicit_reach_; }
+
   // Contacts of a step from positions `from` at time t0 to `to` at time t1 (nodes): places whose
   // gap at `to` is below `reach` [m], and those that met on the way. Appends them, sorted;
   // they depend on nothing but the model and the arguments.
@@ -28,6 +31,7 @@ class ContactFinder {
 
  private:
   const Model& model_;
+  double explicit_reach_ = 0.0;
   std::unique_ptr<SurfaceContacts> surfaces_;
 };
 

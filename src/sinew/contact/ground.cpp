@@ -4,12 +4,12 @@
 
 namespace sinew {
 
-void find_ground_contacts(const Model& model, const std::vector<Vec3>& x,
+void find_ground_contacts(const Model& model, const std::vector<Vec3>& x, double reach,
                           std::vector<Contact>& contacts) {
   const Ground& ground = *model.ground;
   for (Index i = 0; i < model.body_node_count(); ++i) {
     const double gap = ground.normal.dot(x[uz(i)] - ground.point);
-    if (!(gap < 0.0) || model.inverse_mass[uz(i)] == 0.0) continue;
+    if (!(gap < reach) || model.inverse_mass[uz(i)] == 0.0) continue;
     Contact c;
     c.node[0] = i;
     c.weight[0] = 1.0;

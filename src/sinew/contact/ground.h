@@ -8,8 +8,9 @@
 
 namespace sinew {
 
-// Appends a contact for every free node that is below the ground at x [m] (nodes).
-void find_ground_contacts(const Model& model, const std::vector<Vec3>& x,
+// Appends a contact for every free node that is less than `reach` [m] above the ground at x [m]
+// (nodes).
+void find_ground_contacts(const Model& model, const std::vector<Vec3>& x, double reach,
                           std::vector<Contact>& contacts);
 
 // Lifts nodes below the plane onto it: keeps limits and ground both true. Returns how many.

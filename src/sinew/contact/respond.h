@@ -21,11 +21,13 @@ struct ContactReport {
 // half-step velocities and, in last_step, the step before this one; `force` is the force of the
 // step [N] (nodes), `contacts` are those of the predicted positions.
 //
-// Every contact gets the impulse that gives its place the velocity after the impact
-// (contact/rebound.h), and at most mu times that along the plane, against the sliding; positions
-// follow. Contacts that share nodes are taken in turn, in their order, with their impulses so far
-// (Gauss and Seidel), until what is left is small. The sums of impulses of contacts between bodies
-// are zero: momentum is kept to rounding.
+// Every contact gets the impulse with which its gap does not end below 0, or the one of its rebound
+// (contact/rebound.h), and at most mu times that along the plane, against the sliding. Positions
+// follow velocities, as those of constraints do in Verlet's method (SHAKE: Ryckaert, Ciccotti and
+// Berendsen 1977), so that what a contact does to the energy is what its impulse does. Contacts
+// that share nodes are taken in turn, in their order, with their impulses so far (Gauss and
+// Seidel), until what is left is small; those with a gap above 0 take part where the others would
+// close it. The impulses of a contact between bodies add up to zero: momentum is kept to rounding.
 //
 // Adds what every collider is pushed with to state.obstacle_force.
 ContactReport respond_to_contacts(const Model& model, const std::vector<Contact>& contacts,

@@ -211,6 +211,15 @@ void add_attachment(Model& model, Index a, Index b, double stiffness, double dam
   model.compress_limit.push_back(no_limit);
 }
 
+void add_distance(Model& model, Index a, Index b, double length, bool rope) {
+  model.springs.push_back({a, b});
+  model.stiffness.push_back(0.0);
+  model.rest_length.push_back(length);
+  model.damping.push_back(0.0);
+  model.stretch_limit.push_back(0.0);
+  model.compress_limit.push_back(rope ? no_limit : 0.0);
+}
+
 namespace {
 
 void mark_pinned(Model& model) {

@@ -43,6 +43,10 @@ Index add_anchor(Model& model, const std::string& name, const Vec3& point, const
 void add_attachment(Model& model, Index a, Index b, double stiffness, double damping,
                     double rest_length);
 
+// Appends a distance: a spring without stiffness whose limits keep it as long as it is at the
+// start, or, of a rope, no longer. length [m] > 0. Call after the last add_attachment.
+void add_distance(Model& model, Index a, Index b, double length, bool rope);
+
 // Derives inverse masses (0 for pinned nodes and anchors), the node -> spring lists and the
 // colouring of the limited springs. Throws Error(input) where a node is held by two pins.
 void finish(Model& model);

@@ -17,41 +17,45 @@ double allowed_length(const Model& model, std::size_t s, double length) {
   return std::clamp(length, shortest, longest);
 }
 
-bool project(const Model& model, std::size_t s, std::vector<Vec3>& x) {
+LimitSweep project(const Model& model, std::size_t s, std::vector<Vec3>& x) {
   const auto i = uz(model.springs[s][0]);
   const auto j = uz(model.springs[s][1]);
   const Vec3 x_ij = x[j] - x[i];
   const double length = x_ij.norm();
   const double excess = length - allowed_length(model, s, length);
-  if (std::abs(excess) <= model.limit_tolerance * model.rest_length[s] || length == 0.0) {
-    return false;
-  }
+  const bool over = std::abs(excess) > model.limit_tolerance * model.rest_length[s];
+  const bool exact = model.stretch_limit[s] == 0.0 && excess != 0.0;
+  if (length == 0.0 || !(over || exact)) return {};
   const double w_i = model.inverse_mass[i];
   const double w_j = model.inverse_mass[j];
   const Vec3 pull = (excess / (length * (w_i + w_j))) * x_ij;
   x[i] += w_i * pull;
   x[j] -= w_j * pull;
-  return true;
+  return {1, over ? 1 : 0};
 }
 
 }  // namespace
 
-Index sweep_limits(const Model& model, std::vector<Vec3>& x) {
-  Index moved = 0;
+LimitSweep sweep_limits(const Model& model, std::vector<Vec3>& x) {
+  const auto sum = [](const LimitSweep& a, const LimitSweep& b) {
+    return LimitSweep{a.moved + b.moved, a.over + b.over};
+  };
+  LimitSweep done;
   for (std::size_t c = 0; c + 1 < model.colour_start.size(); ++c) {
     const Index first = model.colour_start[c];
-    moved += parallel_reduce(
-        model.colour_start[c + 1] - first, Index{0},
+    const LimitSweep colour = parallel_reduce(
+        model.colour_start[c + 1] - first, LimitSweep{},
         [&](Range r) {
-          Index count = 0;
+          LimitSweep count;
           for (Index k = r.begin; k < r.end; ++k) {
-            count += project(model, uz(model.limited[uz(first + k)]), x) ? 1 : 0;
+            count = sum(count, project(model, uz(model.limited[uz(first + k)]), x));
           }
           return count;
         },
-        [](Index a, Index b) { return a + b; });
+        sum);
+    done = sum(done, colour);
   }
-  return moved;
+  return done;
 }
 
 double measure_limit_violation(const Model& model, const std::vector<Vec3>& x) {

@@ -8,6 +8,7 @@
 #include "sinew/forces/packed.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/tethers.h"
+#include "sinew/forces/ties.h"
 
 namespace sinew {
 namespace {
@@ -78,6 +79,7 @@ void PackedStiffness::times(double a, double b, std::span<const Vec3> u, std::sp
                         outer_product(model_, a, b, u[n], i, Tangent::only_stiffening, workspace_));
   });
   add_tether_stiffness_times(model_, a, u, out);
+  add_tie_stiffness_times(model_, a, u, out);
 }
 
 }  // namespace sinew

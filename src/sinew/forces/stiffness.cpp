@@ -6,6 +6,7 @@
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/tethers.h"
+#include "sinew/forces/ties.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 
@@ -48,6 +49,7 @@ void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double
   if (!only_stiffening)
     add_obstacle_stiffness_times(model, x, workspace.obstacle_center, a, u, false, out);
   if (a != 0.0) add_tether_stiffness_times(model, a, u, out);
+  if (a != 0.0) add_tie_stiffness_times(model, a, u, out);
 }
 
 void prepare_outer_product(const Model& model, std::span<const Vec3> x, double b,

@@ -8,6 +8,7 @@
 #include "sinew/forces/packed.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/tethers.h"
+#include "sinew/forces/ties.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
@@ -66,6 +67,7 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
   }
   for (const double p : workspace.partial) power += p;
 
+  add_tie_forces(model, state.position, workspace.force);
   add_load_forces(model, state.position, state.time, 1.0, workspace.force);
   add_obstacle_forces(model, state.position, state.time, workspace.force);
   add_tether_forces(model, state.position, workspace.force);
@@ -84,7 +86,8 @@ std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
 }
 
 double elastic_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
-  return spring_energy(model, x) + network_energy(model, x) + volume_energy(model, x, workspace);
+  return spring_energy(model, x) + network_energy(model, x) + tie_energy(model, x) +
+         volume_energy(model, x, workspace);
 }
 
 std::vector<Vec3> outer_forces(const Model& model, const State& state) {

@@ -112,6 +112,11 @@ std::uint64_t Model::hash() const {
     h.value(o.nodes.begin);
     h.array(o.triangles);
   }
+  for (const Tie& tie : ties) {
+    for (const Index node : tie.node) h.value(node);
+    for (const double weight : tie.weight) h.value(weight);
+    h.value(tie.stiffness);
+  }
   for (const Tether& t : tethers) {
     h.array(t.nodes);
     h.array(t.stiffness);

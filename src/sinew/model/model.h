@@ -2,6 +2,7 @@
 // A Model is put together by forces/assemble.h and then never changes.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -64,6 +65,14 @@ struct Touch {
   double restitution = 0.0;  // [-] in [0, 1], of explicit steps
 };
 
+// A node that keeps its place in a tet of another body (forces/ties.h): what glue is made of.
+struct Tie {
+  std::array<Index, 5> node = {};  // the node, then the tet's corners
+  std::array<double, 5> weight =
+      {};                  // [-] 1, then minus the place's barycentric coordinates: sum 0
+  double stiffness = 0.0;  // [N/m] > 0
+};
+
 // Springs of rest length zero from nodes to points that are moved from outside during a run
 // (forces/tethers.h). No scene has them: the hands of the live view are made of them.
 struct Tether {
@@ -103,14 +112,15 @@ struct Model {
   std::vector<int> tet_region;        // index into the body's regions (tets)
   std::vector<double> tet_viscosity;  // eta in shear [Pa s] (tets); empty: none is viscous
 
-  // --- springs: those of the bodies, body by body, then attachments ---
+  // --- springs: those of the bodies, body by body, then attachments, then distances, which have
+  // no stiffness and limits of 0 ---
   std::vector<Edge> springs;           // node ids (springs)
   std::vector<double> stiffness;       // k [N/m] (springs)
   std::vector<double> rest_length;     // l0 [m] (springs)
   std::vector<double> damping;         // c [N s/m] (springs)
   std::vector<double> stretch_limit;   // tau_s [-] (springs), infinity: none
   std::vector<double> compress_limit;  // tau_c [-] (springs), infinity: none
-  Index first_attachment = 0;          // springs from here on tie bodies to points or bodies
+  Index first_attachment = 0;          // springs from here on belong to no body
   std::vector<Range> active_springs;   // those with a stiffness or a dashpot, body by body
 
   // --- node -> its springs that pull, for a gather in a fixed order ---
@@ -162,6 +172,7 @@ struct Model {
   std::vector<Body> bodies;
   std::vector<Pin> pins;
   std::vector<Load> loads;
+  std::vector<Tie> ties;
   std::vector<Probe> probes;
   std::vector<Obstacle> obstacles;
   std::vector<Tether> tethers;        // the one thing that may change during a run, beside gravity:

@@ -189,7 +189,7 @@ RunResult build_and_run(const Scene& scene, const RunOptions& options, bool resu
   BuildReport report;
   const Model model = build_model(scene, &report);
   std::vector<std::string> meshes;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings = scene.warnings;
   for (const BuildReport::Body& body : report.bodies) {
     meshes.push_back(body.mesh);
     for (const std::string& w : body.warnings) {

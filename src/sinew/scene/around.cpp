@@ -72,12 +72,14 @@ Scene scene_around(const std::filesystem::path& mesh, const std::vector<std::str
 }
 
 Scene load_scene_or_mesh(const std::filesystem::path& file,
-                         const std::vector<std::string>& overrides) {
+                         const std::vector<std::string>& overrides,
+                         const FrameworkOptions& options) {
   std::string ending = file.extension().string();
   for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
   const std::vector<std::string>& meshes = io::mesh_endings();
   const bool is_mesh = std::find(meshes.begin(), meshes.end(), ending) != meshes.end();
-  return is_mesh ? scene_around(file, overrides) : load_scene(file, overrides);
+  if (is_mesh && !options.any()) return scene_around(file, overrides);
+  return load_framework_scene(file, options, overrides);
 }
 
 }  // namespace sinew

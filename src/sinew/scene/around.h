@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/scene/framework.h"
 #include "sinew/scene/scene.h"
 
 namespace sinew {
@@ -15,8 +16,10 @@ namespace sinew {
 Scene scene_around(const std::filesystem::path& mesh,
                    const std::vector<std::string>& overrides = {});
 
-// scene_around() for a file that ends as meshes do, else load_scene().
+// scene_around() for a file that ends as meshes do, else load_framework_scene(), which takes every
+// scene.
 Scene load_scene_or_mesh(const std::filesystem::path& file,
-                         const std::vector<std::string>& overrides = {});
+                         const std::vector<std::string>& overrides = {},
+                         const FrameworkOptions& options = {});
 
 }  // namespace sinew

@@ -17,9 +17,9 @@
 #include "sinew/identify/calibrate.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/surface.h"
+#include "sinew/scene/connect.h"
 #include "sinew/scene/place.h"
 #include "sinew/scene/rigid_mesh.h"
-#include "sinew/scene/select.h"
 #include "sinew/scene/start.h"
 
 namespace sinew {
@@ -193,28 +193,14 @@ class Parts {
     for (const SceneProbe& p : scene_.probes)
       model_.probes.push_back(
           {p.name, select(p.body, p.select, "'select' of [probe." + p.name + "]")});
-    for (const SceneAttachment& a : scene_.attachments) {
-      if (a.point)
-        attach_to_point(a);
-      else
-        attach_to_body(a);
-    }
+    connect(scene_, bodies_, model_);
     for (const SceneObstacle& o : scene_.obstacles) add_obstacle_of(o);
   }
 
  private:
-  const PlacedBody& body_named(const std::string& name) const {
-    return *std::find_if(bodies_.begin(), bodies_.end(),
-                         [&](const PlacedBody& b) { return b.body->name == name; });
-  }
-
-  // Node ids of the Model.
   std::vector<Index> select(const std::string& body, const Selection& selection,
                             const std::string& what) const {
-    const PlacedBody& placed = body_named(body);
-    std::vector<Index> nodes = select_nodes(placed, selection, what);
-    for (Index& node : nodes) node += placed.first_node;
-    return nodes;
+    return select_in_model(bodies_, body, selection, what);
   }
 
   void add_pin(const ScenePin& pin) {
@@ -245,7 +231,7 @@ class Parts {
     if (!f.force) {
       load.traction = f.traction.value_or(Vec3::Zero());
       load.pressure = f.pressure.value_or(0.0);
-      add_faces(load, body_named(f.body), what, f.select.where);
+      add_faces(load, body_named(bodies_, f.body), what, f.select.where);
     }
     model_.loads.push_back(std::move(load));
   }
@@ -286,58 +272,6 @@ class Parts {
                     fmt::format("[obstacle.{}] is too stiff to compute with", o.name),
                     "check its stiffness, and young and scale of the bodies; they are in SI units",
                     o.where);
-  }
-
-  void attach_to_point(const SceneAttachment& a) {
-    const std::vector<Index> nodes =
-        select(a.body, a.select, "'select' of [attachment." + a.name + "]");
-    Path path = a.path;
-    if (!a.pivot_given) path.pivot = *a.point;
-    const Index anchor = add_anchor(model_, a.name, *a.point, path);
-    for (const Index node : nodes) add_spring(a, node, anchor);
-  }
-
-  void attach_to_body(const SceneAttachment& a) {
-    const std::vector<Index> nodes =
-        select(a.body, a.select, "'select' of [attachment." + a.name + "]");
-    Selection surface;
-    surface.surface = true;
-    surface.where = a.where;
-    std::vector<Index> targets = select(a.to_body, a.to_select.value_or(surface),
-                                        "'to_select' of [attachment." + a.name + "]");
-    std::sort(targets.begin(), targets.end(), [&](Index i, Index j) {
-      return std::pair(position(model_, i).x(), i) < std::pair(position(model_, j).x(), j);
-    });
-    for (const Index node : nodes)
-      add_spring(a, node, nearest_target(targets, position(model_, node)));
-  }
-
-  // `targets` are sorted by x: from the place of the point's x outwards, until x alone is too far.
-  Index nearest_target(const std::vector<Index>& targets, const Vec3& point) const {
-    const auto start =
-        std::lower_bound(targets.begin(), targets.end(), point.x(),
-                         [&](Index node, double x) { return position(model_, node).x() < x; });
-    Index best = -1;
-    double best_distance = std::numeric_limits<double>::infinity();
-    const auto closer = [&](Index node) {  // false: no node further out can be nearer
-      const Vec3 d = position(model_, node) - point;
-      const double distance = d.squaredNorm();
-      if (std::pair(distance, node) < std::pair(best_distance, best)) {
-        best = node;
-        best_distance = distance;
-      }
-      return d.x() * d.x() <= best_distance;
-    };
-    for (auto up = start; up != targets.end() && closer(*up); ++up) {
-    }
-    for (auto down = start; down != targets.begin() && closer(*(down - 1)); --down) {
-    }
-    return best;
-  }
-
-  void add_spring(const SceneAttachment& a, Index from, Index to) {
-    const double distance = (position(model_, to) - position(model_, from)).norm();
-    add_attachment(model_, from, to, a.stiffness, a.damping, a.rest_length.value_or(distance));
   }
 
   const Scene& scene_;

@@ -10,6 +10,7 @@
 #include <array>
 #include <cerrno>
 #include <cstdlib>
+#include <iterator>
 #include <system_error>
 #include <vector>
 
@@ -96,7 +97,9 @@ std::pair<std::string, std::string> split_message(std::string told) {
   return {told.substr(0, at), told.substr(at + remedy.size())};
 }
 
-void fill(const fs::path& path, const fs::path& out, double size, const Location& where) {
+// `called`: how messages name the file.
+void fill(const fs::path& path, const std::string& called, const fs::path& out, double size,
+          const Location& where) {
   std::vector<std::string> command = {mesher(), path.string(), "-q", "--force", "-o", out.string()};
   if (size > 0) {
     command.insert(command.end(), {"--size", fmt::format("{}", size)});
@@ -109,38 +112,93 @@ void fill(const fs::path& path, const fs::path& out, double size, const Location
         ErrorKind::input,
         fmt::format("{} has to be filled with tetrahedra first, and the program for it, {}, "
                     "cannot be started: {}",
-                    path.string(), command[0],
-                    std::generic_category().message(code < 0 ? -code : ENOENT)),
+                    called, command[0], std::generic_category().message(code < 0 ? -code : ENOENT)),
         "./dev mesh builds it (docs/mesher.md); put it beside sinew or on PATH, or name it in "
         "SINEW_MESH",
         where);
   }
+  const std::string name = path.string();
+  for (std::size_t at = told.find(name); name != called && at != told.npos;
+       at = told.find(name, at + called.size())) {
+    told.replace(at, name.size(), called);
+  }
   const auto [message, remedy] = split_message(std::move(told));
-  throw Error(ErrorKind::input,
-              message.empty()
-                  ? fmt::format("{}: sinew-mesh ended with code {}", path.string(), code)
-                  : message,
-              remedy, where);
+  throw Error(
+      ErrorKind::input,
+      message.empty() ? fmt::format("{}: sinew-mesh ended with code {}", called, code) : message,
+      remedy, where);
 }
+
+// The surface stretched to `fit`, as OFF with all digits.
+std::string stretched_off(const fs::path& path, const Vec3& fit, const Location& where) {
+  io::SurfaceSoup soup = io::read_surface(path);
+  fit_to(soup.nodes, fit, where);
+  std::string out = fmt::format("OFF\n{} {} 0\n", soup.nodes.size(), soup.triangles.size());
+  for (const Vec3& x : soup.nodes)
+    fmt::format_to(std::back_inserter(out), "{} {} {}\n", x.x(), x.y(), x.z());
+  for (const Triangle& t : soup.triangles)
+    fmt::format_to(std::back_inserter(out), "3 {} {} {}\n", t[0], t[1], t[2]);
+  return out;
+}
+
+// A file that goes at the end of the block.
+struct Removed {
+  fs::path path;
+  ~Removed() {
+    std::error_code ignored;
+    fs::remove(path, ignored);
+  }
+};
 
 }  // namespace
 
 bool is_filled(const fs::path& path) {
+  return io::is_image_name(path) || is_surface(path);
+}
+
+bool is_surface(const fs::path& path) {
   std::string ending = path.extension().string();
   for (char& c : ending) {
     if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
   }
   const auto& surfaces = io::surface_endings();
-  return io::is_image_name(path) ||
-         std::find(surfaces.begin(), surfaces.end(), ending) != surfaces.end();
+  return std::find(surfaces.begin(), surfaces.end(), ending) != surfaces.end();
 }
 
-TetMesh read_filled(const fs::path& path, double size, const Location& where) {
+void fit_to(std::vector<Vec3>& points, const Vec3& sides, const Location& where) {
+  if (points.empty()) return;
+  Vec3 low = points.front();
+  Vec3 high = low;
+  for (const Vec3& x : points) {
+    low = low.cwiseMin(x);
+    high = high.cwiseMax(x);
+  }
+  const Vec3 width = high - low;
+  if (!(width.minCoeff() > 0.0) || !width.allFinite())
+    throw Error(ErrorKind::input,
+                fmt::format("a mesh of {:.4g} x {:.4g} x {:.4g} cannot be stretched to a box",
+                            width.x(), width.y(), width.z()),
+                "it has to reach along every axis: leave fit out", where);
+  for (Vec3& x : points) x = sides.cwiseProduct((x - low).cwiseQuotient(width));
+}
+
+std::vector<Vec3> surface_vertices(const fs::path& path, const std::optional<Vec3>& fit,
+                                   const Location& where) {
+  std::vector<Vec3> vertices = io::read_surface(path).nodes;
+  if (fit) fit_to(vertices, *fit, where);
+  return vertices;
+}
+
+TetMesh read_filled(const fs::path& path, double size, const Location& where,
+                    const std::optional<Vec3>& fit) {
   Hash hash;
   hash.value(mesher_version);
   hash.text(path.extension().string());  // the format goes by it
   hash.value(size);
   hash.text(io::read_file(path));
+  const bool stretched = fit && is_surface(path);
+  if (stretched)
+    for (const double side : *fit) hash.value(side);
   const fs::path folder = cache_folder();
   const fs::path kept = folder / (hex(hash.digest()) + ".vtu");
   std::error_code failed;
@@ -154,10 +212,19 @@ TetMesh read_filled(const fs::path& path, double size, const Location& where) {
     }
     // Under a name of its own first: two runs may fill the same file at once.
     const fs::path fresh = folder / fmt::format("{}.{}.vtu", hex(hash.digest()), getpid());
-    fill(path, fresh, size, where);
+    if (stretched) {
+      const fs::path surface = folder / fmt::format("{}.{}.off", hex(hash.digest()), getpid());
+      io::write_file(surface, stretched_off(path, *fit, where));
+      const Removed removed{surface};
+      fill(surface, path.string(), fresh, size, where);
+    } else {
+      fill(path, path.string(), fresh, size, where);
+    }
     fs::rename(fresh, kept);
   }
-  return io::read_mesh(kept);
+  TetMesh mesh = io::read_mesh(kept);
+  if (fit && !stretched) fit_to(mesh.nodes, *fit, where);
+  return mesh;
 }
 
 }  // namespace sinew

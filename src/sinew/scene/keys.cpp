@@ -74,6 +74,7 @@ KeyTables make_tables() {
                  other("body", T::table),
                  other("pin", T::table),
                  other("attachment", T::table),
+                 other("distance", T::table),
                  other("force", T::table),
                  other("probe", T::table),
                  other("obstacle", T::table),
@@ -86,6 +87,7 @@ KeyTables make_tables() {
             {
                 text("mesh"),
                 number("mesh_size", "m", "", positive),
+                point("fit", "", "", positive),
                 word("shape", "", "beam box sphere ellipsoid cylinder hollow_sphere"),
                 other("cells", T::cells, "", "[4, 4, 16]", from_to(1, 20'000'000)),
                 point("size", "m", "[0.1, 0.1, 0.4]", positive),
@@ -177,10 +179,22 @@ KeyTables make_tables() {
                       point("point", "m"),
                       text("to_body"),
                       other("to_select", T::table, "", "{ surface = true }"),
+                      number("within", "m", "", not_negative),
                       number("stiffness", "N/m", "100", positive),
                       number("damping", "N s/m", "0", not_negative),
                       number("rest_length", "m", "the distance at the start", not_negative),
                   }};
+  t.distance = {"distance",
+                "[distance.NAME]",
+                {
+                    text("body", "the only one"),
+                    other("select", T::table),
+                    point("point", "m"),
+                    text("to_body", "the same body"),
+                    other("to_select", T::table),
+                    number("length", "m", "the distance at the start", positive),
+                    boolean("rope", "false"),
+                }};
   t.force = {"force",
              "[force.NAME]",
              {
@@ -266,9 +280,9 @@ const Key* KeyTable::find(std::string_view key) const {
 }
 
 std::vector<const KeyTable*> KeyTables::all() const {
-  return {&scene,  &body,  &material, &region,     &motion,  &key_frame,
-          &select, &box,   &sphere,   &half_space, &pin,     &attachment,
-          &force,  &probe, &obstacle, &ground,     &contact, &output};
+  return {&scene, &body,     &material,   &region,  &motion,     &key_frame, &select,
+          &box,   &sphere,   &half_space, &pin,     &attachment, &distance,  &force,
+          &probe, &obstacle, &ground,     &contact, &output};
 }
 
 const KeyTables& key_tables() {

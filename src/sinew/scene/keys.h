@@ -57,7 +57,7 @@ struct KeyTable {
 // The tables by what they hold.
 struct KeyTables {
   KeyTable scene, body, material, region, motion, key_frame, select, box, sphere, half_space, pin,
-      attachment, force, probe, obstacle, ground, contact, output;
+      attachment, distance, force, probe, obstacle, ground, contact, output;
 
   std::vector<const KeyTable*> all() const;
 };

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "sinew/scene/framework.h"
 #include "sinew/scene/overrides.h"
 
 namespace sinew {
@@ -111,6 +112,7 @@ Scene parse_root(const DocValue& document) {
   };
   parse_named(root, "pin", scene.pins, with_bodies(parse_pin));
   parse_named(root, "attachment", scene.attachments, with_bodies(parse_attachment));
+  parse_named(root, "distance", scene.distances, with_bodies(parse_distance));
   parse_named(root, "force", scene.forces, with_bodies(parse_force));
   parse_named(root, "probe", scene.probes, with_bodies(parse_probe));
   parse_named(root, "obstacle", scene.obstacles, parse_obstacle);
@@ -142,7 +144,11 @@ void set_text(DocValue& document, const std::string& key, const std::string& tex
 
 Scene parse_scene(std::string_view text, const std::string& file_name,
                   const std::filesystem::path& base, const std::vector<std::string>& overrides) {
-  DocValue document = parse_document(text, file_name);
+  return parse_tree(parse_document(text, file_name), file_name, base, overrides);
+}
+
+Scene parse_tree(DocValue document, const std::string& file_name, const std::filesystem::path& base,
+                 const std::vector<std::string>& overrides) {
   apply_overrides(document, overrides);
   Scene scene = parse_root(document);
   if (scene.name.empty()) scene.name = std::filesystem::path(file_name).stem().string();
@@ -164,13 +170,15 @@ std::string document_with_base(const Scene& scene) {
   return write_document(document);
 }
 
-Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+std::string read_scene_text(const std::filesystem::path& file, std::string_view kind) {
   const std::string name = file.string();
   std::error_code failed;
   if (!std::filesystem::exists(file, failed))
-    throw Error(ErrorKind::io, "there is no such scene file", "check the path", {name, 0, 0});
+    throw Error(ErrorKind::io, fmt::format("there is no such {} file", kind), "check the path",
+                {name, 0, 0});
   if (!std::filesystem::is_regular_file(file, failed))
-    throw Error(ErrorKind::io, "this is no file", "name a scene file, such as scenes/beam.toml",
+    throw Error(ErrorKind::io, "this is no file",
+                kind == "scene" ? "name a scene file, such as scenes/beam.toml" : "check the path",
                 {name, 0, 0});
   const auto size = std::filesystem::file_size(file, failed);
   if (!failed && size > kMaxSceneBytes)
@@ -181,10 +189,16 @@ Scene load_scene(const std::filesystem::path& file, const std::vector<std::strin
   std::ostringstream text;
   text << in.rdbuf();
   if (!in)
-    throw Error(ErrorKind::io, "the scene file cannot be read", "check its permissions",
-                {name, 0, 0});
+    throw Error(ErrorKind::io, fmt::format("the {} file cannot be read", kind),
+                "check its permissions", {name, 0, 0});
+  return text.str();
+}
+
+Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  const std::string text = read_scene_text(file, "scene");
+  if (is_framework_scene(file, text)) return load_framework_scene(file, {}, overrides);
   const std::filesystem::path base = std::filesystem::absolute(file).parent_path();
-  return parse_scene(text.str(), name, base, overrides);
+  return parse_scene(text, file.string(), base, overrides);
 }
 
 }  // namespace sinew

@@ -16,12 +16,20 @@ SceneBody parse_body(const std::string& name, const DocValue& value);
 ScenePin parse_pin(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneAttachment parse_attachment(const std::string& name, const DocValue& value,
                                  const BodyNames& bodies);
+SceneDistance parse_distance(const std::string& name, const DocValue& value,
+                             const BodyNames& bodies);
 SceneForce parse_force(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneProbe parse_probe(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneObstacle parse_obstacle(const std::string& name, const DocValue& value);
 SceneGround parse_ground(const DocValue& value);
 SceneContact parse_contact(const DocValue& value);
 SceneOutput parse_output(const DocValue& value);
+
+// parse_scene() for a tree.
+Scene parse_tree(DocValue document, const std::string& file_name, const std::filesystem::path& base,
+                 const std::vector<std::string>& overrides);
+// The whole text of a file; `kind` names it in messages: "scene".
+std::string read_scene_text(const std::filesystem::path& file, std::string_view kind);
 
 // Throws where the table lacks a key that it cannot do without.
 void require(const Reader& reader, std::string_view key);

@@ -64,6 +64,9 @@ void parse_source(const Reader& reader, SceneBody& body) {
     reader.fail("mesh_size",
                 fmt::format("{} goes with a surface or an image only", reader.called("mesh_size")),
                 "remove it, or name a file .off .obj .stl .ply .inr .nii as mesh");
+  if (reader.point("fit", body.fit) && body.mesh.empty())
+    reader.fail("fit", fmt::format("{} goes with a mesh file only", reader.called("fit")),
+                "remove it; a shape has keys for its size");
   reader.cells("cells", body.cells);
   reader.point("size", body.size);
   reader.number("jitter", body.jitter);
@@ -183,7 +186,7 @@ SceneBody parse_body(const std::string& name, const DocValue& value) {
   body.name = name;
   body.where = reader.where();
   parse_source(reader, body);
-  reader.number("scale", body.scale);
+  body.scale_given = reader.number("scale", body.scale);
   reader.boolean("center", body.center);
   body.rotation = parse_rotation(reader);
   reader.point("position", body.position);

@@ -34,6 +34,22 @@ ScenePin parse_pin(const std::string& name, const DocValue& value, const BodyNam
   return pin;
 }
 
+namespace {
+
+// Glue is a tie of places, no spring.
+void refuse_what_is_no_glue(const Reader& reader) {
+  if (!reader.has("to_body"))
+    reader.fail("within",
+                fmt::format("{} goes with to_body, and there is none", reader.called("within")),
+                "it glues to the surface of another body: to_body = \"NAME\"");
+  for (const char* key : {"damping", "rest_length"})
+    if (reader.has(key))
+      reader.fail(key, fmt::format("{} does not go with 'within'", reader.called(key)),
+                  "remove it: glue keeps nodes where they are on the other body");
+}
+
+}  // namespace
+
 SceneAttachment parse_attachment(const std::string& name, const DocValue& value,
                                  const BodyNames& bodies) {
   const Reader reader(value, fmt::format("[attachment.{}]", name),
@@ -66,10 +82,44 @@ SceneAttachment parse_attachment(const std::string& name, const DocValue& value,
                   "its springs end at another body");
   }
   if (reader.has("to_select")) a.to_select = parse_selection(reader, "to_select");
-  reader.number("stiffness", a.stiffness);
+  a.stiffness_given = reader.number("stiffness", a.stiffness);
   reader.number("damping", a.damping);
   reader.number("rest_length", a.rest_length);
+  if (reader.number("within", a.within)) refuse_what_is_no_glue(reader);
   return a;
+}
+
+SceneDistance parse_distance(const std::string& name, const DocValue& value,
+                             const BodyNames& bodies) {
+  const Reader reader(value, fmt::format("[distance.{}]", name),
+                      {&key_tables().distance, &key_tables().motion});
+  SceneDistance d;
+  d.name = name;
+  d.where = reader.where();
+  if (reader.has("point") == reader.has("to_select"))
+    throw Error(ErrorKind::input,
+                fmt::format("{} has {}", reader.name(),
+                            reader.has("point") ? "both a point and to_select"
+                                                : "neither a point nor to_select"),
+                "it is kept from point = [x, y, z] or from the node to_select = { ... }",
+                reader.where());
+  for (const char* key : {"path", "smooth", "pivot"})
+    if (reader.has(key) && !reader.has("point"))
+      reader.fail(key, fmt::format("{} goes with a point, and there is none", reader.called(key)),
+                  "remove it; the other node moves by itself");
+  if (reader.has("to_body") && !reader.has("to_select"))
+    reader.fail("to_body",
+                fmt::format("{} goes with to_select, and there is none", reader.called("to_body")),
+                "say which of its nodes: to_select = { nodes = [0] }");
+  d.body = parse_body_name(reader, "body", bodies);
+  d.select = parse_selection(reader, "select");
+  reader.point("point", d.point);
+  d.path = parse_motion(reader, d.pivot_given);
+  d.to_body = reader.has("to_body") ? parse_body_name(reader, "to_body", bodies) : d.body;
+  if (reader.has("to_select")) d.to_select = parse_selection(reader, "to_select");
+  reader.number("length", d.length);
+  reader.boolean("rope", d.rope);
+  return d;
 }
 
 SceneForce parse_force(const std::string& name, const DocValue& value, const BodyNames& bodies) {

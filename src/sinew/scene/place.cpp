@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <numeric>
 
 #include "sinew/io/mesh_io.h"
 #include "sinew/mesh/doctor.h"
@@ -12,6 +13,7 @@
 #include "sinew/mesh/subdivide.h"
 #include "sinew/scene/filled.h"
 #include "sinew/scene/keys.h"
+#include "sinew/scene/nearest_node.h"
 
 namespace sinew {
 
@@ -50,8 +52,12 @@ TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source
   if (!fs::exists(path, failed) && !fs::exists(tetgen, failed)) refuse_missing(body, path);
   source = shown(path).string();
   // mesh_size is in metres, the file is not yet.
-  if (is_filled(path)) return read_filled(source, body.mesh_size / body.scale, body.mesh_where);
-  return io::read_mesh(source);
+  if (is_filled(path)) {
+    return read_filled(source, body.mesh_size / body.scale, body.mesh_where, body.fit);
+  }
+  TetMesh mesh = io::read_mesh(source);
+  if (body.fit) fit_to(mesh.nodes, *body.fit, body.mesh_where);
+  return mesh;
 }
 
 TetMesh make_shape(const SceneBody& body) {
@@ -86,6 +92,18 @@ void make_sound(PlacedBody& placed) {
   placed.node_of_file.assign(in_file, -1);
   for (std::size_t i = 0; i < report.original_node.size(); ++i)
     placed.node_of_file[static_cast<std::size_t>(report.original_node[i])] = static_cast<Index>(i);
+}
+
+// The ids of a surface's file are those of its vertices: each stands for the node nearest to it.
+void take_ids_of_surface(PlacedBody& placed) {
+  const SceneBody& body = *placed.body;
+  if (!body.shape.empty() || !is_surface(body.mesh)) return;
+  std::vector<Index> nodes(placed.mesh.nodes.size());
+  std::iota(nodes.begin(), nodes.end(), 0);
+  const NearestNode nearest(placed.mesh.nodes, std::move(nodes));
+  placed.node_of_file.clear();
+  for (const Vec3& vertex : surface_vertices(placed.source, body.fit, body.mesh_where))
+    placed.node_of_file.push_back(nearest(vertex));
 }
 
 // The nodes of the file keep their ids.
@@ -158,11 +176,13 @@ PlacedBody place(const Scene& scene, const SceneBody& body) {
     placed.mesh = make_shape(body);
   }
   make_sound(placed);
+  take_ids_of_surface(placed);
   refine(placed);
   move_to_world(placed);
   const double volume = checked_volume(placed);
-  if (const auto warning = size_warning(volume, placed.high - placed.low, body.scale))
-    placed.warnings.push_back(*warning);
+  const bool said_to_be_metres = body.scale_given && body.scale == 1.0;
+  const auto warning = size_warning(volume, placed.high - placed.low, body.scale);
+  if (warning && !said_to_be_metres) placed.warnings.push_back(*warning);
   return placed;
 }
 

@@ -13,7 +13,8 @@ struct PlacedBody {
   const SceneBody* body = nullptr;
   std::string source;               // the mesh file, or "shape beam"
   TetMesh mesh;                     // sound, in the world [m]
-  std::vector<Index> node_of_file;  // mesh node (nodes of the file); -1: in no tet, left out
+  std::vector<Index> node_of_file;  // mesh node (nodes of the file, or the vertices of a surface);
+                                    // -1: in no tet, left out
   Vec3 low = Vec3::Zero();          // bounding box [m]
   Vec3 high = Vec3::Zero();
   Index first_node = 0;  // of the body in the Model

@@ -61,6 +61,8 @@ struct SceneBody {
   // Where the mesh comes from: a file or a shape.
   std::string mesh;                       // path, relative to the scene file; empty: a shape
   double mesh_size = 0.0;                 // of surfaces and images: mean edge [m]; 0: sinew-mesh's
+  std::optional<Vec3> fit;                // sides of the box that the file is stretched to, each
+                                          // axis by itself, from 0 on [mesh unit]; absent: as it is
   std::string shape;                      // the word of the scene: beam, box ...
   std::array<int, 3> cells = {4, 4, 16};  // beam, box
   Vec3 size = Vec3(0.1, 0.1, 0.4);        // beam, box [m]
@@ -72,7 +74,8 @@ struct SceneBody {
   int resolution = 4;                     // round shapes: shells
   int refine = 0;                         // times that every tet is cut into eight
   // Placement: x = position + R(rotation) (scale (X - origin))
-  double scale = 1.0;   // metres per mesh unit
+  double scale = 1.0;  // metres per mesh unit
+  bool scale_given = false;
   bool center = false;  // origin: the mesh's centroid (by volume)
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Vec3 position = Vec3::Zero();  // [m]
@@ -94,7 +97,7 @@ struct ScenePin {
 };
 
 // Springs from each selected node of a body to a point, or to its nearest node of another body's
-// selection.
+// selection; or, with `within`, glue.
 struct SceneAttachment {
   std::string name, body;
   Selection select;
@@ -103,9 +106,25 @@ struct SceneAttachment {
   bool pivot_given = false;   // else the point
   std::string to_body;
   std::optional<Selection> to_select;  // absent: the other body's surface
+  std::optional<double> within;        // [m] glue: of nodes no further than this from the surface
   double stiffness = 100.0;            // [N/m] of each spring
+  bool stiffness_given = false;        // else that of glue goes by what the nodes resist with
   double damping = 0.0;                // [N s/m] of each spring
   std::optional<double> rest_length;   // [m]; absent: the distance at the start
+  Location where;
+};
+
+// Keeps how far a node is from a point or from another node.
+struct SceneDistance {
+  std::string name, body;
+  Selection select;           // one node
+  std::optional<Vec3> point;  // [m]
+  Path path;                  // of the point
+  bool pivot_given = false;   // else the point
+  std::string to_body;
+  std::optional<Selection> to_select;  // one node; absent: a point
+  std::optional<double> length;        // [m]; absent: the distance at the start
+  bool rope = false;                   // only no further than that
   Location where;
 };
 
@@ -190,11 +209,13 @@ struct Scene {
   std::vector<SceneBody> bodies;  // in the file's order
   std::vector<ScenePin> pins;
   std::vector<SceneAttachment> attachments;
+  std::vector<SceneDistance> distances;
   std::vector<SceneForce> forces;
   std::vector<SceneProbe> probes;
   std::vector<SceneObstacle> obstacles;
 
-  std::string file;      // the file it came from, for messages
+  std::string file;                   // the file it came from, for messages
+  std::vector<std::string> warnings;  // what a user should know about how it was read
   std::string document;  // the whole scene as TOML with every override in it; parses to this scene
   std::string base;      // folder that relative mesh paths start from
 };

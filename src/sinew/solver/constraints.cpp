@@ -5,6 +5,7 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/network.h"
+#include "sinew/forces/ties.h"
 #include "sinew/forces/volume.h"
 #include "sinew/solver/bound.h"
 #include "sinew/solver/mean_edge.h"
@@ -36,6 +37,10 @@ std::vector<double> node_compliance(const Model& model, double inertia, double r
       d[uz(end)] += model.stiffness[s] + rate * model.damping[s];
     }
   }
+  for_each_tie_pair(model, [&](Index i, Index j, double k) {
+    d[uz(i)] += k;
+    d[uz(j)] += k;
+  });
   for (std::size_t t = 0; t < model.tets.size() && model.has_volume; ++t) {
     double bulk = model.tet_bulk[t];
     for (std::size_t a = 0; a < 4; ++a) {

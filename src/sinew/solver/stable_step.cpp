@@ -13,6 +13,7 @@
 #include "sinew/forces/packed_stiffness.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/tethers.h"
+#include "sinew/forces/ties.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
@@ -186,6 +187,10 @@ double guaranteed_step(const Model& model, const Field& x, const Workspace& work
                        Index& stiffest) {
   std::vector<double> rows = row_sums(model, x, workspace);
   for_each_tethered(model, [&](Index node, double k, const Vec3&) { rows[uz(node)] += k; });
+  for_each_tie_pair(model, [&](Index i, Index j, double k) {
+    rows[uz(i)] += 2.0 * std::abs(k);
+    rows[uz(j)] += 2.0 * std::abs(k);
+  });
   const std::vector<double> viscous_rows = viscous_row_sums(model, x);
   double h = std::numeric_limits<double>::infinity();
   double highest = 0.0;

@@ -51,7 +51,7 @@ double pins_turn(const Model& model, double from, double to) {
   return largest;
 }
 
-// Bodies joined by attachments, as the first body of each group (bodies).
+// Bodies joined by attachments, distances and glue, as the first body of each group (bodies).
 std::vector<std::size_t> joined_bodies(const Model& model) {
   std::vector<std::size_t> group(model.bodies.size());
   std::iota(group.begin(), group.end(), std::size_t{0});
@@ -60,14 +60,18 @@ std::vector<std::size_t> joined_bodies(const Model& model) {
     while (b < model.bodies.size() && !model.bodies[b].nodes.contains(node)) ++b;
     return b;
   };
-  for (auto s = uz(model.first_attachment); s < model.springs.size(); ++s) {
-    const std::size_t a = body_of(model.springs[s][0]);
-    const std::size_t b = body_of(model.springs[s][1]);
-    if (a == group.size() || b == group.size() || group[a] == group[b]) continue;
+  const auto join = [&](Index i, Index j) {
+    const std::size_t a = body_of(i);
+    const std::size_t b = body_of(j);
+    if (a == group.size() || b == group.size() || group[a] == group[b]) return;
     const std::size_t low = std::min(group[a], group[b]);
     const std::size_t high = std::max(group[a], group[b]);
     std::replace(group.begin(), group.end(), high, low);
+  };
+  for (auto s = uz(model.first_attachment); s < model.springs.size(); ++s) {
+    join(model.springs[s][0], model.springs[s][1]);
   }
+  for (const Tie& tie : model.ties) join(tie.node[0], tie.node[1]);
   return group;
 }
 

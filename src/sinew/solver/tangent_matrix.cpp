@@ -7,6 +7,7 @@
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/tethers.h"
+#include "sinew/forces/ties.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
@@ -167,6 +168,11 @@ void TangentMatrix::find_far_neighbours() {
   edge_network_.assign(edges_.size(), 0.0);
   far_start_.assign(free_.size() + 1, 0);
   far_sum_.resize(free_.size());
+  std::vector<std::vector<std::pair<Index, double>>> tied(model_.ties.empty() ? 0 : free_.size());
+  for_each_tie_pair(model_, [&](Index i, Index j, double k) {
+    tied[uz(i)].emplace_back(j, k);
+    tied[uz(j)].emplace_back(i, k);
+  });
   for (std::size_t i = 0; i < free_.size(); ++i) {
     const bool has_network = !model_.network_start.empty();
     for (Index k = has_network ? model_.network_start[i] : 0;
@@ -181,6 +187,10 @@ void TangentMatrix::find_far_neighbours() {
         far_.push_back(j);
         far_stiffness_.push_back(static_cast<float>(model_.network_stiffness[uz(k)]));
       }
+    }
+    for (std::size_t k = 0; !tied.empty() && k < tied[i].size(); ++k) {
+      far_.push_back(tied[i][k].first);
+      far_stiffness_.push_back(static_cast<float>(tied[i][k].second));
     }
     if (far_.size() % 2 == 1) {
       far_.push_back(static_cast<Index>(i));

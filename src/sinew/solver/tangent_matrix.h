@@ -98,7 +98,7 @@ class TangentMatrix {
   std::vector<char> free_;                // 1 where the node moves (nodes)
   std::vector<Index> near_start_, near_;  // neighbours over edges (nodes + 1)
   std::vector<Float4> near_block_;        // B_ij [N/m], see near_column
-  std::vector<Index> far_start_, far_;    // the network's other neighbours (nodes + 1)
+  std::vector<Index> far_start_, far_;    // other neighbours by network and ties (nodes + 1)
   std::vector<float> far_stiffness_;      // k_ij [N/m]
   std::vector<float> far_sum_;            // their sum [N/m] (nodes)
   std::vector<Block3> own_block_;         // D_i [N/m] (nodes)

@@ -107,9 +107,11 @@ void respond(const Model& model, Workspace& workspace, double h, State& state,
              VerletReport& report) {
   std::vector<Contact> contacts;
   state.obstacle_force.assign(model.obstacles.size(), Vec3::Zero());
-  if (model.ground) find_ground_contacts(model, state.position, contacts);
+  // Those that nearly touch take part: what the others push them into counts at once.
+  const double reach = workspace.contacts ? workspace.contacts->explicit_reach() : 0.0;
+  if (model.ground) find_ground_contacts(model, state.position, reach, contacts);
   if (workspace.contacts) {
-    workspace.contacts->find(workspace.before, state.position, state.time, state.time + h, 0.0,
+    workspace.contacts->find(workspace.before, state.position, state.time, state.time + h, reach,
                              contacts);
   }
   report.contact = respond_to_contacts(model, contacts, workspace.force, h, state);
@@ -121,17 +123,17 @@ void respond(const Model& model, Workspace& workspace, double h, State& state,
 void enforce_limits(const Model& model, const Workspace& workspace, double h, State& state,
                     VerletReport& report) {
   const std::vector<Vec3> predicted = state.position;
-  Index moved = 1;
-  while (moved > 0 && report.limit_sweeps < model.limit_sweeps) {
-    moved = sweep_limits(model, state.position);
-    if (moved > 0) {
+  LimitSweep sweep{1, 1};
+  while (sweep.over > 0 && report.limit_sweeps < model.limit_sweeps) {
+    sweep = sweep_limits(model, state.position);
+    if (sweep.moved > 0) {
       ++report.limit_sweeps;
       if (model.ground) lift_onto_ground(model, state.position);
     }
   }
   if (report.limit_sweeps == 0) return;
   report.limits_met =
-      moved == 0 || measure_limit_violation(model, state.position) <= model.limit_tolerance;
+      sweep.over == 0 || measure_limit_violation(model, state.position) <= model.limit_tolerance;
 
   follow_positions(model, workspace, predicted, h, state);
 }

@@ -1,0 +1,24 @@
+// What ties bodies to points and to each other: attachments, glue, distances.
+#pragma once
+
+#include <vector>
+
+#include "sinew/model/model.h"
+#include "sinew/scene/place.h"
+#include "sinew/scene/scene.h"
+
+namespace sinew {
+
+// Adds the scene's attachments and distances to the model, which has all of its bodies. Throws
+// Error(input), at the place in the scene file, for a selection without nodes, a distance that is
+// not between two nodes apart from each other, glue that reaches nothing.
+void connect(const Scene& scene, const std::vector<PlacedBody>& bodies, Model& model);
+
+// The body of that name.
+const PlacedBody& body_named(const std::vector<PlacedBody>& bodies, const std::string& name);
+
+// Node ids of the Model; `what` names the selection in messages.
+std::vector<Index> select_in_model(const std::vector<PlacedBody>& bodies, const std::string& body,
+                                   const Selection& selection, const std::string& what);
+
+}  // namespace sinew

@@ -1,0 +1,24 @@
+// The nearest of a list of points, found without looking at all of them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "sinew/base/vec.h"
+
+namespace sinew {
+
+class NearestNode {
+ public:
+  // The points x[n] of `nodes`, which may not be empty; x must outlive this.
+  NearestNode(std::span<const Vec3> x, std::vector<Index> nodes);
+
+  // The node nearest to the point; of those equally near the lowest.
+  Index operator()(const Vec3& point) const;
+
+ private:
+  std::span<const Vec3> x_;
+  std::vector<Index> nodes_;  // by x
+};
+
+}  // namespace sinew
