@@ -160,7 +160,8 @@ bool Touching::self_pair_counts(Index slot, Index t, const OnTriangle& on, doubl
   const Vec3& n = rest_plane_[uz(t)].normal;
   const double behind = n.dot(rest_[uz(node)] - rest_[uz(tri[0])]);
   if (!(behind < 0.0 && rest_normal_[uz(slot)].dot(n) < 0.0)) return true;
-  return plane_of(from, tri).normal.dot(from[uz(node)] - from[uz(tri[0])]) > -0.2 * self_share * apart;
+  return plane_of(from, tri).normal.dot(from[uz(node)] - from[uz(tri[0])]) >
+         -0.2 * self_share * apart;
 }
 
 // Keeps the nearer of two. Where both are at one place, an edge or a corner, that whose plane the
@@ -247,7 +248,8 @@ Touching::Nearest Touching::nearest(Index slot, bool self, const NearTriangles& 
       }
       // At least as far as the plane and the line through an edge that the node lies beyond.
       const auto beyond = [&](double area, const Vec3& edge) {
-        return area < 0.0 && (side2 - useful2) * edge.squaredNorm() + area * area * (1.0 - 1e-9) > 0;
+        return area < 0.0 &&
+               (side2 - useful2) * edge.squaredNorm() + area * area * (1.0 - 1e-9) > 0;
       };
       if (beyond(a_area, c - b) || beyond(b_area, ac) || beyond(c_area, ab)) continue;
     }
@@ -277,8 +279,8 @@ bool Touching::node_contact_of(Index slot, const Near& near, double range, const
 }
 
 NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& triangles,
-                            std::span<const Plane> planes, bool calm, const Moves& moves,
-                            Contact& c) const {
+                                 std::span<const Plane> planes, bool calm, const Moves& moves,
+                                 Contact& c) const {
   const Index node = surface_.nodes[uz(slot)];
   const bool self = surface_.owner_nodes[uz(owner)].contains(slot);
   const double range = node_range(slot, owner, moves.reach);
@@ -302,11 +304,8 @@ NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& t
            calm_share * std::min(surface_.node_size[uz(slot)], surface_.triangle_size[uz(t)]);
   };
   if (!calm) {
-    const auto at_start = [&](Index t) {
-      return plane_of(moves.from, surface_.triangles[uz(t)]);
-    };
-    const Nearest start =
-        nearest(slot, self, triangles, at_start, moves.from, moves.from, range);
+    const auto at_start = [&](Index t) { return plane_of(moves.from, surface_.triangles[uz(t)]); };
+    const Nearest start = nearest(slot, self, triangles, at_start, moves.from, moves.from, range);
     if (start.any.inside && start.fit.inside && fast(start.fit.triangle) &&
         start.fit.distance() <= pair_depth(slot, start.fit.triangle)) {
       hit = {true, 0.0, start.fit.on.weight, start.fit.plane};
@@ -316,8 +315,8 @@ NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& t
         const Triangle& tri = surface_.triangles[uz(t)];
         if (!fast(t) || (self && (holds(tri, node) || rest_distance(node, tri) == 0.0))) continue;
         const Meeting m = node_meets_triangle(motion_of(node, tri[0], tri[1], tri[2], moves));
-        if (!m.met || (hit.met && (hit.moment < m.moment ||
-                                   (hit.moment == m.moment && hit_triangle < t)))) {
+        if (!m.met ||
+            (hit.met && (hit.moment < m.moment || (hit.moment == m.moment && hit_triangle < t)))) {
           continue;
         }
         hit = m;
@@ -327,8 +326,8 @@ NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& t
   }
 
   // At the end.
-  const bool deep = end.any.inside && end.fit.inside &&
-                    end.fit.distance() <= pair_depth(slot, end.fit.triangle);
+  const bool deep =
+      end.any.inside && end.fit.inside && end.fit.distance() <= pair_depth(slot, end.fit.triangle);
   const bool close = !end.any.inside && end.fit.triangle >= 0 && !end.fit.inside &&
                      end.fit.distance() < moves.reach;
   const auto finish = [&](Index t) {
