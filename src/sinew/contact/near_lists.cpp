@@ -1,6 +1,7 @@
 #include "sinew/contact/near_lists.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "sinew/base/parallel.h"
@@ -85,13 +86,22 @@ NearLists::Spread NearLists::spread_of(Index o, const std::vector<Vec3>& x) cons
   const TouchSurface& s = touching_.surface();
   const Owner& owner = owners_[uz(o)];
   const Index first = s.owner_nodes[uz(o)].begin;
-  Spread spread;
-  spread.lo = spread.hi = x[uz(s.nodes[uz(first)])] - owner.reference[0];
-  for (std::size_t i = 1; i < owner.reference.size(); ++i) {
-    const Vec3 u = x[uz(s.nodes[uz(first) + i])] - owner.reference[i];
-    spread.lo = spread.lo.cwiseMin(u);
-    spread.hi = spread.hi.cwiseMax(u);
+  std::array<double, 3> lo, hi;  // plain numbers: six chains that the processor runs side by side
+  lo.fill(std::numeric_limits<double>::infinity());
+  hi.fill(-std::numeric_limits<double>::infinity());
+  const Index* node = s.nodes.data() + first;
+  for (std::size_t i = 0; i < owner.reference.size(); ++i) {
+    const Vec3& now = x[uz(node[i])];
+    const Vec3& then = owner.reference[i];
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double u = now.data()[c] - then.data()[c];
+      lo[c] = u < lo[c] ? u : lo[c];
+      hi[c] = u > hi[c] ? u : hi[c];
+    }
   }
+  Spread spread;
+  spread.lo = Vec3(lo[0], lo[1], lo[2]);
+  spread.hi = Vec3(hi[0], hi[1], hi[2]);
   return spread;
 }
 
@@ -236,6 +246,25 @@ void NearLists::build_edges(Index a, Index b, double more, bool swept, const Mov
   join(parts, list);
 }
 
+void NearLists::list_triangles(NearPair& pair) {
+  const TouchSurface& s = touching_.surface();
+  marked_.resize(s.triangles.size(), 0);
+  pair.triangles.clear();
+  const auto mark = [&](Index t) {
+    if (std::exchange(marked_[uz(t)], 1) == 0) pair.triangles.push_back(t);
+  };
+  for (const NearList* list : {&pair.nodes_of_a, &pair.nodes_of_b}) {
+    for (const Index t : list->item) mark(t);
+    for (const Index slot : list->key) {
+      for (Index k = s.ring_start[uz(slot)]; k < s.ring_start[uz(slot) + 1]; ++k) {
+        mark(s.ring[uz(k)]);
+      }
+    }
+  }
+  for (const Index t : pair.triangles) marked_[uz(t)] = 0;
+  std::sort(pair.triangles.begin(), pair.triangles.end());
+}
+
 void NearLists::build(NearPair& pair, const Moves& moves) {
   ++built_;
   Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
@@ -246,6 +275,7 @@ void NearLists::build(NearPair& pair, const Moves& moves) {
   refit(pair.b, swept ? 2 : 1, moves);
   build_nodes(pair.a, pair.b, more, swept, moves, pair.nodes_of_a);
   if (pair.a != pair.b) build_nodes(pair.b, pair.a, more, swept, moves, pair.nodes_of_b);
+  list_triangles(pair);
   build_edges(pair.a, pair.b, more, swept, moves, pair.edges);
   pair.known = !swept;
   pair.reach = moves.reach;

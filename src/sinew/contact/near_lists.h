@@ -30,6 +30,7 @@ struct NearPair {
   NearList nodes_of_a;  // node slots of a, triangles of b
   NearList nodes_of_b;  // node slots of b, triangles of a; empty where a = b
   NearList edges;       // edges of a, edges of b
+  std::vector<Index> triangles;  // those of the lists of nodes, and those around these nodes; rising
   bool calm = false;    // in this step nothing of them moves far enough to be followed on its way
 
   bool known = false;  // the lists can be used again while nothing has moved by more than the skin
@@ -78,6 +79,7 @@ class NearLists {
   double motion(const NearPair& pair) const;
   bool still_good(const NearPair& pair, double reach) const;
   void build(NearPair& pair, const Moves& moves);
+  void list_triangles(NearPair& pair);
   void build_nodes(Index a, Index b, double more, bool swept, const Moves& moves, NearList& list);
   void build_edges(Index a, Index b, double more, bool swept, const Moves& moves, NearList& list);
 
@@ -85,6 +87,7 @@ class NearLists {
   std::vector<Owner> owners_;
   std::vector<NearPair> pairs_;  // all that may touch at all, by a, then b
   std::vector<const NearPair*> near_;
+  std::vector<char> marked_;  // scratch (triangles)
   std::int64_t built_ = 0;
 };
 

@@ -12,6 +12,7 @@ struct SurfaceContacts::Search {
   explicit Search(const Model& model)
       : touching(model),
         lists(model, touching),
+        planes(model.surface.triangles.size()),
         held(model.surface.nodes.size(), -1),
         slot_of(model.rest_position.size(), -1) {
     for (std::size_t i = 0; i < model.surface.nodes.size(); ++i) {
@@ -27,6 +28,7 @@ struct SurfaceContacts::Search {
 
   Touching touching;
   NearLists lists;
+  std::vector<Plane> planes;   // at the end of the step (triangles); those of the pair at hand
   std::vector<Index> held;     // the pair in which the node was last found to touch (node slots)
   std::vector<Index> slot_of;  // -1: not on a surface (nodes of the model)
 };
@@ -52,10 +54,10 @@ void SurfaceContacts::Search::add_nodes(const NearPair& pair, const NearList& li
                                         std::vector<Contact>& out) {
   const std::size_t before = out.size();
   add_in_order(list.count(), out, [&](Range r, std::vector<Contact>& found) {
-    Contact contact;
     for (Index k = r.begin; k < r.end; ++k) {
-      if (touching.node_touches(list.key[uz(k)], owner, list.of(k), pair.calm, moves, contact)) {
-        found.push_back(contact);
+      if (!touching.node_touches(list.key[uz(k)], owner, list.of(k), planes, pair.calm, moves,
+                                 found.emplace_back())) {
+        found.pop_back();
       }
     }
   });
@@ -75,7 +77,6 @@ void SurfaceContacts::Search::add_edges(const NearPair& pair, Index pair_number,
   const TouchSurface& s = touching.surface();
   const NearList& list = pair.edges;
   add_in_order(list.count(), out, [&](Range r, std::vector<Contact>& found) {
-    Contact contact;
     for (Index k = r.begin; k < r.end; ++k) {
       const Index a = list.key[uz(k)];
       const bool a_sharp = s.edge_bend[uz(a)] > Touching::sharp;
@@ -84,7 +85,7 @@ void SurfaceContacts::Search::add_edges(const NearPair& pair, Index pair_number,
         const bool b_sharp = s.edge_bend[uz(b)] > Touching::sharp;
         if (!b_sharp && a_carried) continue;
         if (!a_sharp && carried(b, pair_number)) continue;
-        if (touching.edges_touch(a, b, pair.calm, moves, contact)) found.push_back(contact);
+        if (!touching.edges_touch(a, b, pair.calm, moves, found.emplace_back())) found.pop_back();
       }
     }
   });
@@ -106,6 +107,10 @@ void SurfaceContacts::find(const std::vector<Vec3>& from, const std::vector<Vec3
   std::fill(search_->held.begin(), search_->held.end(), -1);
   Index number = 0;
   for (const NearPair* pair : search_->lists.update(moves)) {
+    parallel_for(static_cast<Index>(pair->triangles.size()), [&](Index i) {
+      const Index t = pair->triangles[uz(i)];
+      search_->planes[uz(t)] = plane_of(to, search_->touching.surface().triangles[uz(t)]);
+    });
     search_->add_nodes(*pair, pair->nodes_of_a, pair->b, number, moves, out);
     search_->add_nodes(*pair, pair->nodes_of_b, pair->a, number, moves, out);
     search_->add_edges(*pair, number, moves, out);

@@ -12,11 +12,6 @@ constexpr double opposed = 0.3;       // cosine of node's and triangle's normals
 constexpr double opposed_self = 0.0;  // the same within a body
 constexpr std::uint64_t edge_kind = std::uint64_t{1} << 62;
 
-Vec3 area_normal(const std::vector<Vec3>& x, const Triangle& t) {
-  const Vec3& a = x[uz(t[0])];
-  return (x[uz(t[1])] - a).cross(x[uz(t[2])] - a);
-}
-
 // 0 where there is no direction.
 Vec3 unit(const Vec3& v) {
   const double n = v.norm();
@@ -68,6 +63,15 @@ Touching::Touching(const Model& model)
     largest_size_.push_back(largest);
     smallest_size_.push_back(smallest);
   }
+  for (const Triangle& t : surface_.triangles) rest_plane_.push_back(plane_of(rest_, t));
+  for (std::size_t i = 0; i < surface_.nodes.size(); ++i) {
+    Vec3 sum = Vec3::Zero();
+    for (Index k = surface_.ring_start[i]; k < surface_.ring_start[i + 1]; ++k) {
+      const Plane& plane = rest_plane_[uz(surface_.ring[uz(k)])];
+      sum += plane.length * plane.normal;
+    }
+    rest_normal_.push_back(unit(sum));
+  }
   for (std::size_t e = 0; e < surface_.edges.size(); ++e) {
     if (surface_.edge_triangles[e][1] != -1) continue;
     const Index t = surface_.edge_triangles[e][0];
@@ -104,14 +108,6 @@ double Touching::rest_distance(const Edge& a, const Edge& b) const {
   return segments_distance(rest_[uz(a[0])], rest_[uz(a[1])], rest_[uz(b[0])], rest_[uz(b[1])]);
 }
 
-Vec3 Touching::node_normal(Index slot, const std::vector<Vec3>& x) const {
-  Vec3 sum = Vec3::Zero();
-  for (Index k = surface_.ring_start[uz(slot)]; k < surface_.ring_start[uz(slot) + 1]; ++k) {
-    sum += area_normal(x, surface_.triangles[uz(surface_.ring[uz(k)])]);
-  }
-  return unit(sum);
-}
-
 bool Touching::on_boundary(Index t, const OnTriangle& on) const {
   const Triangle& tri = surface_.triangles[uz(t)];
   for (std::size_t c = 0; c < 3; ++c) {
@@ -125,10 +121,10 @@ bool Touching::on_boundary(Index t, const OnTriangle& on) const {
 
 // The two sides of a slit: at rest they face each other over a gap, not over material.
 bool Touching::slit(Index slot, Index t, double apart) const {
-  const Triangle& tri = surface_.triangles[uz(t)];
-  const Vec3 n = unit(area_normal(rest_, tri));
-  const double front = n.dot(rest_[uz(surface_.nodes[uz(slot)])] - rest_[uz(tri[0])]);
-  return front > 0.5 * apart && node_normal(slot, rest_).dot(n) < -0.5;
+  const Vec3& n = rest_plane_[uz(t)].normal;
+  if (!(rest_normal_[uz(slot)].dot(n) < -0.5)) return false;
+  const Vec3& a = rest_[uz(surface_.triangles[uz(t)][0])];
+  return n.dot(rest_[uz(surface_.nodes[uz(slot)])] - a) > 0.5 * apart;
 }
 
 bool Touching::node_apart(Index slot, Index t, double distance) const {
@@ -156,11 +152,10 @@ bool Touching::self_pair_counts(Index slot, Index t, const OnTriangle& on, doubl
   if (!(std::sqrt(on.distance2) < self_share * apart)) return side < 0.0 && slit(slot, t, apart);
   if (side >= 0.0) return true;
   // Behind it at rest, through the material: only if it has come from the front.
-  const Vec3 n = area_normal(rest_, tri);
+  const Vec3& n = rest_plane_[uz(t)].normal;
   const double behind = n.dot(rest_[uz(node)] - rest_[uz(tri[0])]);
-  if (!(behind < 0.0 && node_normal(slot, rest_).dot(n) < 0.0)) return true;
-  const Vec3 now = unit(area_normal(from, tri));
-  return now.dot(from[uz(node)] - from[uz(tri[0])]) > -0.2 * self_share * apart;
+  if (!(behind < 0.0 && rest_normal_[uz(slot)].dot(n) < 0.0)) return true;
+  return plane_of(from, tri).normal.dot(from[uz(node)] - from[uz(tri[0])]) > -0.2 * self_share * apart;
 }
 
 // Keeps the nearer of two. Where both are at one place, an edge or a corner, that whose plane the
@@ -178,29 +173,90 @@ void Touching::Near::take(const Near& other) {
   *this = other;
 }
 
+template <typename PlaneOf>
 Touching::Nearest Touching::nearest(Index slot, bool self, std::span<const Index> triangles,
-                                    const std::vector<Vec3>& x, const std::vector<Vec3>& from,
-                                    double range) const {
+                                    const PlaneOf& plane_at, const std::vector<Vec3>& x,
+                                    const std::vector<Vec3>& from, double range) const {
   const Index node = surface_.nodes[uz(slot)];
   const Vec3& p = x[uz(node)];
   Vec3 normal = Vec3::Zero();
   bool known = false;
   Nearest result;
-  for (const Index t : triangles) {
-    const Triangle& tri = surface_.triangles[uz(t)];
-    if (self && holds(tri, node)) continue;
+  const auto take = [&](Index t, const Plane& plane, const OnTriangle& on) {
     Near near;
-    near.on = nearest_on(p, x, tri);
-    if (!(near.on.distance2 <= range * range)) continue;
     near.triangle = t;
-    near.plane = unit(area_normal(x, tri));
-    near.side = near.plane.dot(p - near.on.point);
-    near.inside = near.side < 0.0 && !on_boundary(t, near.on);
-    if (self && !self_pair_counts(slot, t, near.on, near.side, from)) continue;
-    if (!known) normal = node_normal(slot, x);
-    known = true;
+    near.on = on;
+    near.plane = plane.normal;
+    near.side = plane.normal.dot(p - on.point);
+    near.inside = near.side < 0.0 && !on_boundary(t, on);
+    if (self && !self_pair_counts(slot, t, on, near.side, from)) return;
+    if (!known) {
+      for (Index k = surface_.ring_start[uz(slot)]; k < surface_.ring_start[uz(slot) + 1]; ++k) {
+        const Plane& around = plane_at(surface_.ring[uz(k)]);
+        normal += around.length * around.normal;
+      }
+      normal = unit(normal);
+      known = true;
+    }
     if (!self) result.any.take(near);
     if (normal.dot(near.plane) < (self ? opposed_self : opposed)) result.fit.take(near);
+  };
+  // Those over whose inside the node lies come first: most often they leave the others, which are
+  // at least as far as the plane and the line through the edge nearest to the node, nothing to do.
+  constexpr Index at_once = 32;
+  std::array<Index, at_once> rest;
+  std::array<double, at_once> rest_far;
+  for (std::size_t begin = 0; begin < triangles.size(); begin += at_once) {
+    const auto some = triangles.subspan(begin, std::min<std::size_t>(at_once,
+                                                                     triangles.size() - begin));
+    std::size_t left = 0;
+    for (const Index t : some) {
+      const Triangle& tri = surface_.triangles[uz(t)];
+      if (self && holds(tri, node)) continue;
+      const Plane& plane = plane_at(t);
+      const Vec3 &a = x[uz(tri[0])], &b = x[uz(tri[1])], &c = x[uz(tri[2])];
+      const Vec3 ab = b - a, ac = c - a, ap = p - a;
+      const double side = plane.normal.dot(ap);
+      double far2 = side * side;
+      if (far2 > range * range) continue;
+      // The normal of a needle is noise.
+      if (plane.length > 1e-10 * std::max(ab.squaredNorm(), ac.squaredNorm())) {
+        const double b_area = ap.cross(ac).dot(plane.normal);
+        const double c_area = ab.cross(ap).dot(plane.normal);
+        const double a_area = plane.length - b_area - c_area;
+        if (a_area > 0.0 && b_area > 0.0 && c_area > 0.0) {
+          OnTriangle on;
+          const double wb = b_area / plane.length, wc = c_area / plane.length;
+          on.weight = {1.0 - wb - wc, wb, wc};
+          on.point = a + wb * ab + wc * ac;
+          on.distance2 = side * side;
+          take(t, plane, on);
+          continue;
+        }
+        if (a_area < 0.0) far2 = side * side + a_area * a_area / (c - b).squaredNorm();
+        if (b_area < 0.0) {
+          far2 = std::max(far2, side * side + b_area * b_area / ac.squaredNorm());
+        }
+        if (c_area < 0.0) {
+          far2 = std::max(far2, side * side + c_area * c_area / ab.squaredNorm());
+        }
+        far2 *= 1.0 - 1e-9;
+        if (far2 > range * range) continue;
+      } else {
+        far2 = 0.0;
+      }
+      rest[left] = t;
+      rest_far[left++] = far2;
+    }
+    for (std::size_t k = 0; k < left; ++k) {
+      const double known2 = result.fit.triangle < 0 ? std::numeric_limits<double>::infinity()
+                            : self ? result.fit.on.distance2
+                                   : std::max(result.fit.on.distance2, result.any.on.distance2);
+      if (rest_far[k] > known2 * (1.0 + 1e-6) + 1e-29) continue;
+      const Triangle& tri = surface_.triangles[uz(rest[k])];
+      const OnTriangle on = nearest_on(p, x, tri);
+      if (on.distance2 <= range * range) take(rest[k], plane_at(rest[k]), on);
+    }
   }
   if (self) result.any = result.fit;
   return result;
@@ -224,12 +280,15 @@ bool Touching::node_contact_of(Index slot, const Near& near, double range, const
   return true;
 }
 
-bool Touching::node_touches(Index slot, Index owner, std::span<const Index> triangles, bool calm,
-                            const Moves& moves, Contact& c) const {
+bool Touching::node_touches(Index slot, Index owner, std::span<const Index> triangles,
+                            std::span<const Plane> planes, bool calm, const Moves& moves,
+                            Contact& c) const {
   const Index node = surface_.nodes[uz(slot)];
   const bool self = surface_.owner_nodes[uz(owner)].contains(slot);
   const double range = node_range(slot, owner, moves.reach);
-  const Nearest end = nearest(slot, self, triangles, moves.to, moves.from, range);
+  const auto at_end = [&](Index t) -> const Plane& { return planes[uz(t)]; };
+  const Nearest end = nearest(slot, self, triangles, at_end, moves.to, moves.from, range);
+  if (calm && end.fit.triangle < 0) return false;
 
   c = Contact{};
   c.count = 4;
@@ -246,7 +305,11 @@ bool Touching::node_touches(Index slot, Index owner, std::span<const Index> tria
            calm_share * std::min(surface_.node_size[uz(slot)], surface_.triangle_size[uz(t)]);
   };
   if (!calm) {
-    const Nearest start = nearest(slot, self, triangles, moves.from, moves.from, range);
+    const auto at_start = [&](Index t) {
+      return plane_of(moves.from, surface_.triangles[uz(t)]);
+    };
+    const Nearest start =
+        nearest(slot, self, triangles, at_start, moves.from, moves.from, range);
     if (start.any.inside && start.fit.inside && fast(start.fit.triangle) &&
         start.fit.distance() <= pair_depth(slot, start.fit.triangle)) {
       hit = {true, 0.0, start.fit.on.weight, start.fit.plane};
@@ -322,6 +385,10 @@ bool Touching::supports(Index edge, const Vec3& n, const Moves& m, double moment
 
 bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Contact& c) const {
   const Edge &a = surface_.edges[uz(ea)], &b = surface_.edges[uz(eb)];
+  const auto& x = moves.to;
+  const OnLines on = nearest_on_lines(x[uz(a[0])], x[uz(a[1])], x[uz(b[0])], x[uz(b[1])]);
+  const bool over = !on.parallel && on.s > 0.0 && on.s < 1.0 && on.t > 0.0 && on.t < 1.0;
+  if (calm && !over) return false;
   if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) return false;
   const double size = std::min(edge_size(ea), edge_size(eb));
   const bool self = triangle_owner_[uz(surface_.edge_triangles[uz(ea)][0])] ==
@@ -339,9 +406,7 @@ bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Co
   };
 
   // At the end.
-  const auto& x = moves.to;
-  const OnLines on = nearest_on_lines(x[uz(a[0])], x[uz(a[1])], x[uz(b[0])], x[uz(b[1])]);
-  if (!on.parallel && on.s > 0.0 && on.s < 1.0 && on.t > 0.0 && on.t < 1.0) {
+  if (over) {
     Vec3 n = unit((x[uz(a[1])] - x[uz(a[0])]).cross(x[uz(b[1])] - x[uz(b[0])]));
     for (int turn = 0; turn < 2; ++turn, n = -n) {
       if (!supports(eb, n, moves, 1.0, 0.1) || !supports(ea, -n, moves, 1.0, 0.1)) continue;

@@ -18,6 +18,20 @@ struct Moves {
   double reach = 0.0;
 };
 
+// The planes of the triangles at some positions: their unit normals (0 where there is no area) and
+// their lengths before, twice the areas.
+struct Plane {
+  Vec3 normal = Vec3::Zero();  // [-]
+  double length = 0.0;         // [m2]
+};
+
+inline Plane plane_of(const std::vector<Vec3>& x, const Triangle& t) {
+  const Vec3& a = x[uz(t[0])];
+  const Vec3 n = (x[uz(t[1])] - a).cross(x[uz(t[2])] - a);
+  const double length = n.norm();
+  return {length > 0.0 ? Vec3(n / length) : Vec3(Vec3::Zero()), length};
+}
+
 class Touching {
  public:
   // How deep a node may be inside and still be led out, as a share of the local size (size of the
@@ -43,10 +57,12 @@ class Touching {
 
   // The contact of a node with an owner's surface, of which `triangles` (rising) holds at least
   // those within node_range at either end of the step and those that it may meet on the way. The
-  // node may belong to that owner. `calm`: no pair of them moves far enough to be followed on the
-  // way. False: none.
-  bool node_touches(Index node_slot, Index owner, std::span<const Index> triangles, bool calm,
-                    const Moves& moves, Contact& contact) const;
+  // node may belong to that owner. `planes` (triangles) holds those of these triangles and of those
+  // around the node, at the end of the step. `calm`: no pair of them moves far enough to be followed
+  // on the way. False: none.
+  bool node_touches(Index node_slot, Index owner, std::span<const Index> triangles,
+                    std::span<const Plane> planes, bool calm, const Moves& moves,
+                    Contact& contact) const;
 
   // The contact of edge a with edge b, what is touched. False: none.
   bool edges_touch(Index a, Index b, bool calm, const Moves& moves, Contact& contact) const;
@@ -80,8 +96,8 @@ class Touching {
     Near any;
     Near fit;
   };
-  Vec3 node_normal(Index slot, const std::vector<Vec3>& x) const;
-  Nearest nearest(Index slot, bool self, std::span<const Index> triangles,
+  template <typename PlaneOf>
+  Nearest nearest(Index slot, bool self, std::span<const Index> triangles, const PlaneOf& plane_of,
                   const std::vector<Vec3>& x, const std::vector<Vec3>& from, double range) const;
   bool slit(Index slot, Index t, double apart) const;
   bool self_pair_counts(Index slot, Index t, const OnTriangle& on, double side,
@@ -97,6 +113,8 @@ class Touching {
 
   TouchSurface surface_;
   std::vector<Vec3> rest_;                 // [m] (nodes of the model)
+  std::vector<Plane> rest_plane_;          // (triangles)
+  std::vector<Vec3> rest_normal_;          // [-] unit (node slots)
   std::vector<Index> triangle_owner_;      // (triangles)
   std::vector<double> largest_size_;       // of its triangles [m] (owners)
   std::vector<double> smallest_size_;      // [m] (owners)
