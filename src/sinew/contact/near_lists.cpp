@@ -229,7 +229,7 @@ void NearLists::build_edges(Index a, Index b, double more, bool swept, const Mov
       std::erase_if(found, [&](Index f) {
         const Index other = first + f;
         if ((a == b && other <= e) || !touching_.may_meet(e, other)) return true;
-        if (swept) return false;
+        if (swept) return a == b && touching_.edges_apart(e, other, 0.0);
         const auto& x = moves.to;
         const Edge& o = s.edges[uz(other)];
         const double distance =

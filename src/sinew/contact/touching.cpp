@@ -26,6 +26,10 @@ bool holds(const Triangle& t, Index node) {
   return t[0] == node || t[1] == node || t[2] == node;
 }
 
+bool joined(const Edge& a, const Edge& b) {
+  return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+}
+
 // How far the pair moves against each other within the step.
 double relative_motion(Index p, const Triangle& t, const Moves& m) {
   const Vec3 dp = m.to[uz(p)] - m.from[uz(p)];
@@ -135,7 +139,8 @@ bool Touching::node_apart(Index slot, Index t, double distance) const {
 }
 
 bool Touching::edges_apart(Index a, Index b, double distance) const {
-  return distance >= self_share * rest_distance(surface_.edges[uz(a)], surface_.edges[uz(b)]);
+  const Edge &e = surface_.edges[uz(a)], &f = surface_.edges[uz(b)];
+  return joined(e, f) || distance >= self_share * rest_distance(e, f);
 }
 
 double Touching::calm_motion(Index a, Index b) const {
@@ -389,7 +394,7 @@ bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Co
   const OnLines on = nearest_on_lines(x[uz(a[0])], x[uz(a[1])], x[uz(b[0])], x[uz(b[1])]);
   const bool over = !on.parallel && on.s > 0.0 && on.s < 1.0 && on.t > 0.0 && on.t < 1.0;
   if (calm && !over) return false;
-  if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) return false;
+  if (joined(a, b)) return false;
   const double size = std::min(edge_size(ea), edge_size(eb));
   const bool self = triangle_owner_[uz(surface_.edge_triangles[uz(ea)][0])] ==
                     triangle_owner_[uz(surface_.edge_triangles[uz(eb)][0])];

@@ -1,0 +1,100 @@
+#include "sinew/contact/overlaps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/contact/box_tree.h"
+#include "sinew/contact/nearest.h"
+#include "sinew/mesh/tet_mesh.h"
+
+namespace sinew {
+namespace {
+
+// Positive or negative: a tet that is inside out still holds what is between its corners.
+bool inside(const Vec3& p, const std::vector<Vec3>& x, const Tet& t) {
+  const Vec3 &a = x[uz(t[0])], &b = x[uz(t[1])], &c = x[uz(t[2])], &d = x[uz(t[3])];
+  const double all = signed_volume(a, b, c, d);
+  if (!(all != 0.0)) return false;
+  return signed_volume(p, b, c, d) / all >= 0.0 && signed_volume(a, p, c, d) / all >= 0.0 &&
+         signed_volume(a, b, p, d) / all >= 0.0 && signed_volume(a, b, c, p) / all >= 0.0;
+}
+
+template <std::size_t n>
+Box box_around(const std::array<Index, n>& nodes, const std::vector<Vec3>& x) {
+  Box box;
+  for (const Index i : nodes) box.add(x[uz(i)]);
+  return box;
+}
+
+BoxTree tree_of(const std::vector<Box>& boxes) {
+  std::vector<Vec3> centres;
+  for (const Box& b : boxes) centres.push_back(0.5 * (b.lo + b.hi));
+  BoxTree tree(centres);
+  if (!tree.empty()) tree.refit(boxes);
+  return tree;
+}
+
+double distance_to_surface(const Vec3& p, const std::vector<Vec3>& x, const TouchSurface& s,
+                           Range triangles) {
+  double least2 = std::numeric_limits<double>::infinity();
+  for (Index t = triangles.begin; t < triangles.end; ++t) {
+    const Triangle& tri = s.triangles[uz(t)];
+    least2 = std::min(
+        least2,
+        nearest_on_triangle(p, x[uz(tri[0])], x[uz(tri[1])], x[uz(tri[2])]).distance2);
+  }
+  return std::sqrt(least2);
+}
+
+}  // namespace
+
+std::vector<Overlap> find_overlaps(const Model& model, const std::vector<Vec3>& x,
+                                   double tolerance) {
+  const TouchSurface& s = model.surface;
+  std::vector<Overlap> overlaps;
+  if (s.empty()) return overlaps;
+  std::vector<BoxTree> trees;
+  std::vector<Box> bounds;
+  for (const Body& body : model.bodies) {
+    std::vector<Box> boxes;
+    Box all;
+    for (Index t = body.tets.begin; t < body.tets.end; ++t) {
+      boxes.push_back(box_around(model.tets[uz(t)], x));
+      all.add(boxes.back());
+    }
+    trees.push_back(tree_of(boxes));
+    bounds.push_back(all);
+  }
+  std::vector<Index> near;
+  for (Index a = 0; a < s.body_count; ++a) {
+    for (Index b = 0; b < s.body_count; ++b) {
+      if (a == b || !bounds[uz(a)].overlaps(bounds[uz(b)])) continue;
+      const Index first = model.bodies[uz(b)].tets.begin;
+      Overlap overlap;
+      overlap.a = a;
+      overlap.b = b;
+      const Range slots = s.owner_nodes[uz(a)];
+      for (Index slot = slots.begin; slot < slots.end; ++slot) {
+        const Index node = s.nodes[uz(slot)];
+        near.clear();
+        trees[uz(b)].find(box_around(std::array<Index, 1>{node}, x), near);
+        const bool in = std::any_of(near.begin(), near.end(), [&](Index t) {
+          return inside(x[uz(node)], x, model.tets[uz(first + t)]);
+        });
+        if (!in) continue;
+        const double depth =
+            distance_to_surface(x[uz(node)], x, s, s.owner_triangles[uz(b)]);
+        if (depth < tolerance) continue;
+        ++overlap.nodes;
+        if (overlap.deepest < 0 || depth > overlap.depth) {
+          overlap.depth = depth;
+          overlap.deepest = node;
+        }
+      }
+      if (overlap.nodes > 0) overlaps.push_back(overlap);
+    }
+  }
+  return overlaps;
+}
+
+}  // namespace sinew

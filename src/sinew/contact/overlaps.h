@@ -1,0 +1,25 @@
+// Which bodies are inside each other: the referee of contact, and what a start is checked with.
+#pragma once
+
+#include <vector>
+
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+// Nodes on the surface of body a that are inside tets of body b.
+struct Overlap {
+  Index a = 0;
+  Index b = 0;
+  Index nodes = 0;     // how many
+  Index deepest = -1;  // the node that is deepest inside
+  double depth = 0.0;  // its distance from the surface of b [m]
+};
+
+// All pairs of different bodies that overlap at positions x [m] (nodes), by a, then b; needs
+// Model::surface. `tolerance` [m]: nodes that are less deep do not count. Rigid meshes have no
+// inside here.
+std::vector<Overlap> find_overlaps(const Model& model, const std::vector<Vec3>& x,
+                                   double tolerance = 0.0);
+
+}  // namespace sinew
