@@ -34,9 +34,9 @@ std::vector<Contact> all_pairs(const Model& model, const Moves& moves) {
       if (!(a == b ? model.touch->self : model.touch->bodies)) continue;
       std::vector<char> held(model.rest_position.size(), 0);
       for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
+        const std::vector<Index> all = ids(s.owner_triangles[uz(to)]);
         for (const Index slot : ids(s.owner_nodes[uz(from)])) {
-          if (touching.node_touches(slot, to, ids(s.owner_triangles[uz(to)]), planes, false, moves,
-                                    c)) {
+          if (touching.node_touches(slot, to, {all, {}, 0.0}, planes, false, moves, c)) {
             found.push_back(c);
             held[uz(c.node[0])] = 1;
           }

@@ -23,15 +23,21 @@ Box box_around(const std::array<Index, n>& nodes, bool swept, const Moves& m) {
   return b;
 }
 
+float rounded_down(double x) {
+  return static_cast<float>(x * (1.0 - 1e-6));
+}
+
 // Joins the lists of consecutive blocks.
 void join(const std::vector<NearList>& parts, NearList& list) {
   list.key.clear();
   list.item.clear();
+  list.far.clear();
   list.start.assign(1, 0);
   for (const NearList& part : parts) {
     const Index offset = static_cast<Index>(list.item.size());
     list.key.insert(list.key.end(), part.key.begin(), part.key.end());
     list.item.insert(list.item.end(), part.item.begin(), part.item.end());
+    list.far.insert(list.far.end(), part.far.begin(), part.far.end());
     for (std::size_t k = 1; k < part.start.size(); ++k) {
       list.start.push_back(offset + part.start[k]);
     }
@@ -158,19 +164,25 @@ double NearLists::motion(const NearPair& pair) const {
   return (a.to.shift() - a.from.shift() - b.to.shift() + b.from.shift()).norm() + off;
 }
 
-// Whether both ends of the step are within the skin of where the lists were made.
-bool NearLists::still_good(const NearPair& pair, double reach) const {
-  if (!pair.known || reach > pair.reach) return false;
+// How far nodes of the pair have moved against each other since its lists were made, at most, at
+// either end of the step.
+double NearLists::moved(const NearPair& pair) const {
   const Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
+  double most = 0.0;
   for (const bool end : {false, true}) {
     const Spread &sa = end ? a.to : a.from, &sb = end ? b.to : b.from;
-    double moved = a.drift + sa.off() + b.drift + sb.off() - pair.drift;
+    double way = a.drift + sa.off() + b.drift + sb.off() - pair.drift;
     if (pair.a != pair.b) {
-      moved += (a.travel + sa.shift() - b.travel - sb.shift() - pair.travel).norm();
+      way += (a.travel + sa.shift() - b.travel - sb.shift() - pair.travel).norm();
     }
-    if (!(moved <= 0.999 * skin(pair))) return false;
+    if (!(way <= most)) most = way;
   }
-  return true;
+  return 1.000001 * most + 1e-9 * skin(pair);
+}
+
+// Whether both ends of the step are within the skin of where the lists were made.
+bool NearLists::still_good(const NearPair& pair, double reach) const {
+  return pair.known && reach <= pair.reach && pair.moved <= skin(pair);
 }
 
 void NearLists::build_nodes(Index a, Index b, double more, bool swept, const Moves& moves,
@@ -184,24 +196,34 @@ void NearLists::build_nodes(Index a, Index b, double more, bool swept, const Mov
     NearList& part = parts[uz(block_index)];
     part.start.assign(1, 0);
     std::vector<Index> found;
+    std::vector<std::pair<float, Index>> near;
     for (Index slot = slots.begin + r.begin; slot < slots.begin + r.end; ++slot) {
       const double range = touching_.node_range(slot, b, moves.reach) + more;
       const std::array<Index, 1> node = {s.nodes[uz(slot)]};
       found.clear();
       tree.find(box_around(node, swept, moves).grown(range), found);
-      std::erase_if(found, [&](Index t) {
-        const Triangle& tri = s.triangles[uz(first + t)];
-        if (swept) return a == b && touching_.node_apart(slot, first + t, 0.0);
-        const double distance =
-            std::sqrt(nearest_on_triangle(moves.to[uz(node[0])], moves.to[uz(tri[0])],
-                                          moves.to[uz(tri[1])], moves.to[uz(tri[2])])
-                          .distance2);
-        return distance > range ||
-               (a == b && touching_.node_apart(slot, first + t, distance - more));
-      });
-      if (found.empty()) continue;
-      std::sort(found.begin(), found.end());
-      for (const Index t : found) part.item.push_back(first + t);
+      near.clear();
+      for (const Index f : found) {
+        const Index t = first + f;
+        if (swept) {
+          if (a != b || !touching_.node_apart(slot, t, 0.0)) near.emplace_back(0.0f, t);
+          continue;
+        }
+        const auto& x = moves.to;
+        const Triangle& tri = s.triangles[uz(t)];
+        const double distance = std::sqrt(
+            nearest_on_triangle(x[uz(node[0])], x[uz(tri[0])], x[uz(tri[1])], x[uz(tri[2])])
+                .distance2);
+        if (distance > range) continue;
+        if (a == b && touching_.node_apart(slot, t, distance - more)) continue;
+        near.emplace_back(rounded_down(distance), t);
+      }
+      if (near.empty()) continue;
+      std::sort(near.begin(), near.end());
+      for (const auto& [far, t] : near) {
+        part.item.push_back(t);
+        if (!swept) part.far.push_back(far);
+      }
       part.key.push_back(slot);
       part.start.push_back(static_cast<Index>(part.item.size()));
     }
@@ -281,6 +303,7 @@ void NearLists::build(NearPair& pair, const Moves& moves) {
   pair.reach = moves.reach;
   pair.drift = a.drift + b.drift;
   pair.travel = a.travel - b.travel;
+  pair.moved = moved(pair);
 }
 
 const std::vector<const NearPair*>& NearLists::update(const Moves& moves) {
@@ -301,6 +324,7 @@ const std::vector<const NearPair*>& NearLists::update(const Moves& moves) {
       if (!box_of(a).grown(range).overlaps(box_of(b))) continue;
     }
     near_.push_back(&pair);
+    pair.moved = moved(pair);
     if (!still_good(pair, moves.reach)) stale.push_back(&pair);
   }
   for (const NearPair* pair : stale) {

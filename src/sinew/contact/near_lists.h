@@ -14,12 +14,18 @@ namespace sinew {
 struct NearList {
   std::vector<Index> key;    // rising
   std::vector<Index> start;  // (keys + 1)
-  std::vector<Index> item;   // rising within a key
+  std::vector<Index> item;   // by `far`, then rising, within a key
+  std::vector<float> far;    // how far they were when the list was made [m] (items); empty: unknown
 
   Index count() const { return static_cast<Index>(key.size()); }
   std::span<const Index> of(Index k) const {
     const auto begin = uz(start[uz(k)]);
     return std::span<const Index>(item).subspan(begin, uz(start[uz(k) + 1]) - begin);
+  }
+  std::span<const float> far_of(Index k) const {
+    if (far.empty()) return {};
+    const auto begin = uz(start[uz(k)]);
+    return std::span<const float>(far).subspan(begin, uz(start[uz(k) + 1]) - begin);
   }
 };
 
@@ -31,6 +37,7 @@ struct NearPair {
   NearList nodes_of_b;  // node slots of b, triangles of a; empty where a = b
   NearList edges;       // edges of a, edges of b
   std::vector<Index> triangles;  // those of the lists of nodes, and those around these nodes; rising
+  double moved = 0.0;   // how far its nodes have moved against each other since then, at most [m]
   bool calm = false;    // in this step nothing of them moves far enough to be followed on its way
 
   bool known = false;  // the lists can be used again while nothing has moved by more than the skin
@@ -77,6 +84,7 @@ class NearLists {
   Box box_of(const Owner& o) const;
   double skin(const NearPair& pair) const;
   double motion(const NearPair& pair) const;
+  double moved(const NearPair& pair) const;
   bool still_good(const NearPair& pair, double reach) const;
   void build(NearPair& pair, const Moves& moves);
   void list_triangles(NearPair& pair);

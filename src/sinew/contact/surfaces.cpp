@@ -55,7 +55,7 @@ void SurfaceContacts::Search::add_nodes(const NearPair& pair, const NearList& li
   const std::size_t before = out.size();
   add_in_order(list.count(), out, [&](Range r, std::vector<Contact>& found) {
     for (Index k = r.begin; k < r.end; ++k) {
-      if (!touching.node_touches(list.key[uz(k)], owner, list.of(k), planes, pair.calm, moves,
+      if (!touching.node_touches(list.key[uz(k)], owner, {list.of(k), list.far_of(k), pair.moved}, planes, pair.calm, moves,
                                  found.emplace_back())) {
         found.pop_back();
       }

@@ -170,16 +170,17 @@ void Touching::Near::take(const Near& other) {
   constexpr double same = 1e-7;
   if (triangle >= 0) {
     if (other.on.distance2 > on.distance2 * (1.0 + same) + 1e-30) return;
-    if (other.on.distance2 >= on.distance2 * (1.0 - same) - 1e-30 &&
-        !(std::abs(other.side) > std::abs(side) * (1.0 + 1e-9))) {
-      return;
+    if (other.on.distance2 >= on.distance2 * (1.0 - same) - 1e-30) {
+      const double mine = std::abs(side), its = std::abs(other.side);
+      if (its < mine * (1.0 - 1e-9)) return;
+      if (its <= mine * (1.0 + 1e-9) && other.triangle > triangle) return;
     }
   }
   *this = other;
 }
 
 template <typename PlaneOf>
-Touching::Nearest Touching::nearest(Index slot, bool self, std::span<const Index> triangles,
+Touching::Nearest Touching::nearest(Index slot, bool self, const NearTriangles& triangles,
                                     const PlaneOf& plane_at, const std::vector<Vec3>& x,
                                     const std::vector<Vec3>& from, double range) const {
   const Index node = surface_.nodes[uz(slot)];
@@ -206,62 +207,51 @@ Touching::Nearest Touching::nearest(Index slot, bool self, std::span<const Index
     if (!self) result.any.take(near);
     if (normal.dot(near.plane) < (self ? opposed_self : opposed)) result.fit.take(near);
   };
-  // Those over whose inside the node lies come first: most often they leave the others, which are
-  // at least as far as the plane and the line through the edge nearest to the node, nothing to do.
-  constexpr Index at_once = 32;
-  std::array<Index, at_once> rest;
-  std::array<double, at_once> rest_far;
-  for (std::size_t begin = 0; begin < triangles.size(); begin += at_once) {
-    const auto some = triangles.subspan(begin, std::min<std::size_t>(at_once,
-                                                                     triangles.size() - begin));
-    std::size_t left = 0;
-    for (const Index t : some) {
-      const Triangle& tri = surface_.triangles[uz(t)];
-      if (self && holds(tri, node)) continue;
-      const Plane& plane = plane_at(t);
-      const Vec3 &a = x[uz(tri[0])], &b = x[uz(tri[1])], &c = x[uz(tri[2])];
-      const Vec3 ab = b - a, ac = c - a, ap = p - a;
-      const double side = plane.normal.dot(ap);
-      double far2 = side * side;
-      if (far2 > range * range) continue;
-      // The normal of a needle is noise.
-      if (plane.length > 1e-10 * std::max(ab.squaredNorm(), ac.squaredNorm())) {
-        const double b_area = ap.cross(ac).dot(plane.normal);
-        const double c_area = ab.cross(ap).dot(plane.normal);
-        const double a_area = plane.length - b_area - c_area;
-        if (a_area > 0.0 && b_area > 0.0 && c_area > 0.0) {
-          OnTriangle on;
-          const double wb = b_area / plane.length, wc = c_area / plane.length;
-          on.weight = {1.0 - wb - wc, wb, wc};
-          on.point = a + wb * ab + wc * ac;
-          on.distance2 = side * side;
-          take(t, plane, on);
-          continue;
-        }
-        if (a_area < 0.0) far2 = side * side + a_area * a_area / (c - b).squaredNorm();
-        if (b_area < 0.0) {
-          far2 = std::max(far2, side * side + b_area * b_area / ac.squaredNorm());
-        }
-        if (c_area < 0.0) {
-          far2 = std::max(far2, side * side + c_area * c_area / ab.squaredNorm());
-        }
-        far2 *= 1.0 - 1e-9;
-        if (far2 > range * range) continue;
-      } else {
-        far2 = 0.0;
+  const std::size_t count = triangles.triangle.size();
+  for (std::size_t k = 0; k < count; ++k) {
+    // Nothing farther than this is of use.
+    const double useful2 =
+        result.fit.triangle < 0
+            ? range * range
+            : (self ? result.fit.on.distance2
+                    : std::max(result.fit.on.distance2, result.any.on.distance2)) *
+                      (1.0 + 1e-6) +
+                  1e-29;
+    if (!triangles.far.empty()) {
+      const double least = static_cast<double>(triangles.far[k]) - triangles.moved;
+      if (least > 0.0 && least * least > useful2) break;
+    }
+    const Index t = triangles.triangle[k];
+    const Triangle& tri = surface_.triangles[uz(t)];
+    if (self && holds(tri, node)) continue;
+    const Plane& plane = plane_at(t);
+    const Vec3 &a = x[uz(tri[0])], &b = x[uz(tri[1])], &c = x[uz(tri[2])];
+    const Vec3 ab = b - a, ac = c - a, ap = p - a;
+    const double side = plane.normal.dot(ap);
+    const double side2 = side * side;
+    if (side2 > range * range) continue;
+    // The normal of a needle is noise.
+    if (plane.length > 1e-10 * std::max(ab.squaredNorm(), ac.squaredNorm())) {
+      const double b_area = ap.cross(ac).dot(plane.normal);
+      const double c_area = ab.cross(ap).dot(plane.normal);
+      const double a_area = plane.length - b_area - c_area;
+      if (a_area > 0.0 && b_area > 0.0 && c_area > 0.0) {
+        OnTriangle on;
+        const double wb = b_area / plane.length, wc = c_area / plane.length;
+        on.weight = {1.0 - wb - wc, wb, wc};
+        on.point = a + wb * ab + wc * ac;
+        on.distance2 = side2;
+        take(t, plane, on);
+        continue;
       }
-      rest[left] = t;
-      rest_far[left++] = far2;
+      // At least as far as the plane and the line through an edge that the node lies beyond.
+      const auto beyond = [&](double area, const Vec3& edge) {
+        return area < 0.0 && (side2 - useful2) * edge.squaredNorm() + area * area * (1.0 - 1e-9) > 0;
+      };
+      if (beyond(a_area, c - b) || beyond(b_area, ac) || beyond(c_area, ab)) continue;
     }
-    for (std::size_t k = 0; k < left; ++k) {
-      const double known2 = result.fit.triangle < 0 ? std::numeric_limits<double>::infinity()
-                            : self ? result.fit.on.distance2
-                                   : std::max(result.fit.on.distance2, result.any.on.distance2);
-      if (rest_far[k] > known2 * (1.0 + 1e-6) + 1e-29) continue;
-      const Triangle& tri = surface_.triangles[uz(rest[k])];
-      const OnTriangle on = nearest_on(p, x, tri);
-      if (on.distance2 <= range * range) take(rest[k], plane_at(rest[k]), on);
-    }
+    const OnTriangle on = nearest_on(p, x, tri);
+    if (on.distance2 <= range * range) take(t, plane, on);
   }
   if (self) result.any = result.fit;
   return result;
@@ -285,7 +275,7 @@ bool Touching::node_contact_of(Index slot, const Near& near, double range, const
   return true;
 }
 
-bool Touching::node_touches(Index slot, Index owner, std::span<const Index> triangles,
+bool Touching::node_touches(Index slot, Index owner, const NearTriangles& triangles,
                             std::span<const Plane> planes, bool calm, const Moves& moves,
                             Contact& c) const {
   const Index node = surface_.nodes[uz(slot)];
@@ -320,11 +310,14 @@ bool Touching::node_touches(Index slot, Index owner, std::span<const Index> tria
       hit = {true, 0.0, start.fit.on.weight, start.fit.plane};
       hit_triangle = start.fit.triangle;
     } else {
-      for (const Index t : triangles) {
+      for (const Index t : triangles.triangle) {
         const Triangle& tri = surface_.triangles[uz(t)];
         if (!fast(t) || (self && (holds(tri, node) || rest_distance(node, tri) == 0.0))) continue;
         const Meeting m = node_meets_triangle(motion_of(node, tri[0], tri[1], tri[2], moves));
-        if (!m.met || (hit.met && hit.moment <= m.moment)) continue;
+        if (!m.met || (hit.met && (hit.moment < m.moment ||
+                                   (hit.moment == m.moment && hit_triangle < t)))) {
+          continue;
+        }
         hit = m;
         hit_triangle = t;
       }

@@ -32,6 +32,14 @@ inline Plane plane_of(const std::vector<Vec3>& x, const Triangle& t) {
   return {length > 0.0 ? Vec3(n / length) : Vec3(Vec3::Zero()), length};
 }
 
+// The triangles that a node may touch.
+struct NearTriangles {
+  std::span<const Index> triangle;
+  // How far they were from the node when the list was made [m], rising; empty: not known.
+  std::span<const float> far;
+  double moved = 0.0;  // at most so far has any of them moved against the node since then [m]
+};
+
 class Touching {
  public:
   // How deep a node may be inside and still be led out, as a share of the local size (size of the
@@ -55,12 +63,11 @@ class Touching {
     return (a > sharp && b > concave) || (b > sharp && a > concave);
   }
 
-  // The contact of a node with an owner's surface, of which `triangles` (rising) holds at least
-  // those within node_range at either end of the step and those that it may meet on the way. The
+  // The contact of a node with an owner's surface, of which `triangles` holds at least those within node_range at either end of the step and those that it may meet on the way. The
   // node may belong to that owner. `planes` (triangles) holds those of these triangles and of those
   // around the node, at the end of the step. `calm`: no pair of them moves far enough to be followed
   // on the way. False: none.
-  bool node_touches(Index node_slot, Index owner, std::span<const Index> triangles,
+  bool node_touches(Index node_slot, Index owner, const NearTriangles& triangles,
                     std::span<const Plane> planes, bool calm, const Moves& moves,
                     Contact& contact) const;
 
@@ -97,7 +104,7 @@ class Touching {
     Near fit;
   };
   template <typename PlaneOf>
-  Nearest nearest(Index slot, bool self, std::span<const Index> triangles, const PlaneOf& plane_of,
+  Nearest nearest(Index slot, bool self, const NearTriangles& triangles, const PlaneOf& plane_of,
                   const std::vector<Vec3>& x, const std::vector<Vec3>& from, double range) const;
   bool slit(Index slot, Index t, double apart) const;
   bool self_pair_counts(Index slot, Index t, const OnTriangle& on, double side,
