@@ -36,10 +36,10 @@ std::vector<Contact> all_pairs(const Model& model, const Moves& moves) {
       for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
         const std::vector<Index> all = ids(s.owner_triangles[uz(to)]);
         for (const Index slot : ids(s.owner_nodes[uz(from)])) {
-          if (touching.node_touches(slot, to, {all, {}, 0.0}, planes, false, moves, c)) {
-            found.push_back(c);
-            held[uz(c.node[0])] = 1;
-          }
+          const NodeTouch touch =
+              touching.node_touches(slot, to, {all, {}, 0.0}, planes, false, moves, c);
+          if (touch == NodeTouch::touches) found.push_back(c);
+          held[uz(s.nodes[uz(slot)])] |= touch != NodeTouch::none;
         }
         if (a == b) break;
       }

@@ -29,7 +29,7 @@ struct SurfaceContacts::Search {
   Touching touching;
   NearLists lists;
   std::vector<Plane> planes;   // at the end of the step (triangles); those of the pair at hand
-  std::vector<Index> held;     // the pair in which the node was last found to touch (node slots)
+  std::vector<Index> held;     // the pair in which the node is at the other owner (node slots)
   std::vector<Index> slot_of;  // -1: not on a surface (nodes of the model)
 };
 
@@ -52,21 +52,19 @@ void add_in_order(Index count, std::vector<Contact>& out, const Add& add) {
 void SurfaceContacts::Search::add_nodes(const NearPair& pair, const NearList& list, Index owner,
                                         Index pair_number, const Moves& moves,
                                         std::vector<Contact>& out) {
-  const std::size_t before = out.size();
   add_in_order(list.count(), out, [&](Range r, std::vector<Contact>& found) {
     for (Index k = r.begin; k < r.end; ++k) {
-      if (!touching.node_touches(list.key[uz(k)], owner, {list.of(k), list.far_of(k), pair.moved}, planes, pair.calm, moves,
-                                 found.emplace_back())) {
-        found.pop_back();
-      }
+      const Index slot = list.key[uz(k)];
+      const NodeTouch touch =
+          touching.node_touches(slot, owner, {list.of(k), list.far_of(k), pair.moved}, planes,
+                                pair.calm, moves, found.emplace_back());
+      if (touch != NodeTouch::touches) found.pop_back();
+      if (touch != NodeTouch::none) held[uz(slot)] = pair_number;
     }
   });
-  for (std::size_t i = before; i < out.size(); ++i) {
-    held[uz(slot_of[uz(out[i].node[0])])] = pair_number;
-  }
 }
 
-// Whether both ends of an edge touch the other owner already: a flat edge there adds nothing.
+// Whether both ends of an edge are at the other owner already: a flat edge there adds nothing.
 bool SurfaceContacts::Search::carried(Index edge, Index pair_number) const {
   const Edge& e = touching.surface().edges[uz(edge)];
   return held[uz(slot_of[uz(e[0])])] == pair_number && held[uz(slot_of[uz(e[1])])] == pair_number;

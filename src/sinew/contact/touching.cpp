@@ -186,6 +186,7 @@ Touching::Nearest Touching::nearest(Index slot, bool self, const NearTriangles& 
   const Index node = surface_.nodes[uz(slot)];
   const Vec3& p = x[uz(node)];
   Vec3 normal = Vec3::Zero();
+  double length = 0.0;
   bool known = false;
   Nearest result;
   const auto take = [&](Index t, const Plane& plane, const OnTriangle& on) {
@@ -201,11 +202,11 @@ Touching::Nearest Touching::nearest(Index slot, bool self, const NearTriangles& 
         const Plane& around = plane_at(surface_.ring[uz(k)]);
         normal += around.length * around.normal;
       }
-      normal = unit(normal);
+      length = normal.norm();
       known = true;
     }
     if (!self) result.any.take(near);
-    if (normal.dot(near.plane) < (self ? opposed_self : opposed)) result.fit.take(near);
+    if (normal.dot(near.plane) < (self ? opposed_self : opposed) * length) result.fit.take(near);
   };
   const std::size_t count = triangles.triangle.size();
   for (std::size_t k = 0; k < count; ++k) {
@@ -275,7 +276,7 @@ bool Touching::node_contact_of(Index slot, const Near& near, double range, const
   return true;
 }
 
-bool Touching::node_touches(Index slot, Index owner, const NearTriangles& triangles,
+NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& triangles,
                             std::span<const Plane> planes, bool calm, const Moves& moves,
                             Contact& c) const {
   const Index node = surface_.nodes[uz(slot)];
@@ -283,7 +284,8 @@ bool Touching::node_touches(Index slot, Index owner, const NearTriangles& triang
   const double range = node_range(slot, owner, moves.reach);
   const auto at_end = [&](Index t) -> const Plane& { return planes[uz(t)]; };
   const Nearest end = nearest(slot, self, triangles, at_end, moves.to, moves.from, range);
-  if (calm && end.fit.triangle < 0) return false;
+  const NodeTouch other = end.any.triangle < 0 ? NodeTouch::none : NodeTouch::near;
+  if (calm && end.fit.triangle < 0) return other;
 
   c = Contact{};
   c.count = 4;
@@ -342,10 +344,10 @@ bool Touching::node_touches(Index slot, Index owner, const NearTriangles& triang
     }
     c.normal = hit.normal;
     c.moment = hit.moment;
-    if (finish(hit_triangle)) return true;
+    if (finish(hit_triangle)) return NodeTouch::touches;
   }
-  if (!(deep || close)) return false;
-  if (!node_contact_of(slot, end.fit, range, moves, c)) return false;
+  if (!(deep || close)) return other;
+  if (!node_contact_of(slot, end.fit, range, moves, c)) return other;
   if (hit.met) {
     c.moment = hit.moment;
   } else {  // the gap as if it changed evenly
@@ -353,7 +355,7 @@ bool Touching::node_touches(Index slot, Index owner, const NearTriangles& triang
     const double after = contact_gap(c, moves.to);
     c.moment = before <= 0.0 ? 0.0 : (after < 0.0 ? before / (before - after) : 1.0);
   }
-  return finish(end.fit.triangle);
+  return finish(end.fit.triangle) ? NodeTouch::touches : other;
 }
 
 // Whether the surface around an edge lies behind the plane through it with normal n, at a moment of

@@ -40,6 +40,9 @@ struct NearTriangles {
   double moved = 0.0;  // at most so far has any of them moved against the node since then [m]
 };
 
+// near: not touching, but within node_range at the end of the step.
+enum class NodeTouch { none, near, touches };
+
 class Touching {
  public:
   // How deep a node may be inside and still be led out, as a share of the local size (size of the
@@ -66,8 +69,8 @@ class Touching {
   // The contact of a node with an owner's surface, of which `triangles` holds at least those within node_range at either end of the step and those that it may meet on the way. The
   // node may belong to that owner. `planes` (triangles) holds those of these triangles and of those
   // around the node, at the end of the step. `calm`: no pair of them moves far enough to be followed
-  // on the way. False: none.
-  bool node_touches(Index node_slot, Index owner, const NearTriangles& triangles,
+  // on the way.
+  NodeTouch node_touches(Index node_slot, Index owner, const NearTriangles& triangles,
                     std::span<const Plane> planes, bool calm, const Moves& moves,
                     Contact& contact) const;
 
