@@ -40,8 +40,7 @@ double distance_to_surface(const Vec3& p, const std::vector<Vec3>& x, const Touc
   for (Index t = triangles.begin; t < triangles.end; ++t) {
     const Triangle& tri = s.triangles[uz(t)];
     least2 = std::min(
-        least2,
-        nearest_on_triangle(p, x[uz(tri[0])], x[uz(tri[1])], x[uz(tri[2])]).distance2);
+        least2, nearest_on_triangle(p, x[uz(tri[0])], x[uz(tri[1])], x[uz(tri[2])]).distance2);
   }
   return std::sqrt(least2);
 }
@@ -82,8 +81,7 @@ std::vector<Overlap> find_overlaps(const Model& model, const std::vector<Vec3>& 
           return inside(x[uz(node)], x, model.tets[uz(first + t)]);
         });
         if (!in) continue;
-        const double depth =
-            distance_to_surface(x[uz(node)], x, s, s.owner_triangles[uz(b)]);
+        const double depth = distance_to_surface(x[uz(node)], x, s, s.owner_triangles[uz(b)]);
         if (depth < tolerance) continue;
         ++overlap.nodes;
         if (overlap.deepest < 0 || depth > overlap.depth) {

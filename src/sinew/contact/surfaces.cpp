@@ -70,8 +70,8 @@ bool SurfaceContacts::Search::carried(Index edge, Index pair_number) const {
   return held[uz(slot_of[uz(e[0])])] == pair_number && held[uz(slot_of[uz(e[1])])] == pair_number;
 }
 
-void SurfaceContacts::Search::add_edges(const NearPair& pair, Index pair_number,
-                                        const Moves& moves, std::vector<Contact>& out) {
+void SurfaceContacts::Search::add_edges(const NearPair& pair, Index pair_number, const Moves& moves,
+                                        std::vector<Contact>& out) {
   const TouchSurface& s = touching.surface();
   const NearList& list = pair.edges;
   add_in_order(list.count(), out, [&](Range r, std::vector<Contact>& found) {
