@@ -123,9 +123,8 @@ TEST(SurfaceContacts, NothingGetsIntoAClosedSurfaceUnseen) {
   const std::vector<TetMesh> targets = {sphere(0.05, 3), box(Vec3(0.08, 0.08, 0.08), {2, 2, 2}),
                                         hollow_sphere(0.05, 0.045, 1)};
   for (const TetMesh& target : targets) {
-    const TetMesh grains = cloud(400, 0.15, 1e-4, rng, [](const Vec3& p) {
-      return p.cwiseAbs().maxCoeff() > 0.055;
-    });
+    const TetMesh grains =
+        cloud(400, 0.15, 1e-4, rng, [](const Vec3& p) { return p.cwiseAbs().maxCoeff() > 0.055; });
     const Model model = touching_model({target, grains}, {true, false, 0.5, 0.0});
     Index all_inside = 0;
     for (const double speed : {0.0005, 0.01, 0.05, 0.1, 0.3}) {
@@ -231,8 +230,8 @@ TEST(SurfaceContacts, TheArmsOfAUTouchWhenTheyClose) {
   TetMesh u = box(Vec3(0.12, 0.12, 0.03), {12, 12, 3});
   std::vector<Tet> kept;
   for (const Tet& t : u.tets) {
-    const Vec3 c = 0.25 * (u.nodes[uz(t[0])] + u.nodes[uz(t[1])] + u.nodes[uz(t[2])] +
-                           u.nodes[uz(t[3])]);
+    const Vec3 c =
+        0.25 * (u.nodes[uz(t[0])] + u.nodes[uz(t[1])] + u.nodes[uz(t[2])] + u.nodes[uz(t[3])]);
     if (std::abs(c.x()) > 0.01 || c.y() < -0.02) kept.push_back(t);
   }
   u.tets = kept;

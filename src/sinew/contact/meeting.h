@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "sinew/base/vec.h"
 
@@ -77,6 +78,13 @@ struct NodeAndTriangle {
   Vec3 p0, a0, b0, c0;
   Vec3 p1, a1, b1, c1;
 };
+
+// Of four nodes, p0 ... c0 in this order.
+inline NodeAndTriangle motion_of(Index p, Index a, Index b, Index c, const std::vector<Vec3>& from,
+                                 const std::vector<Vec3>& to) {
+  return {from[uz(p)], from[uz(a)], from[uz(b)], from[uz(c)],
+          to[uz(p)],   to[uz(a)],   to[uz(b)],   to[uz(c)]};
+}
 
 // The first moment at which p goes through the triangle from its front to its back.
 struct Meeting {

@@ -77,7 +77,8 @@ NearLists::NearLists(const Model& model, const Touching& touching) : touching_(t
   const Touch touch = model.touch.value_or(Touch{false, false, 0.0, 0.0});
   for (Index a = 0; a < s.owner_count(); ++a) {
     for (Index b = a; b < s.owner_count(); ++b) {
-      if (a >= s.body_count || !(a == b ? touch.self : touch.bodies)) continue;
+      const bool rigid = b >= s.body_count;
+      if (a >= s.body_count || !(a == b ? touch.self : rigid || touch.bodies)) continue;
       if (owners_[uz(a)].reference.empty() || owners_[uz(b)].reference.empty()) continue;
       NearPair pair;
       pair.a = a;

@@ -36,9 +36,10 @@ struct NearPair {
   NearList nodes_of_a;  // node slots of a, triangles of b
   NearList nodes_of_b;  // node slots of b, triangles of a; empty where a = b
   NearList edges;       // edges of a, edges of b
-  std::vector<Index> triangles;  // those of the lists of nodes, and those around these nodes; rising
-  double moved = 0.0;   // how far its nodes have moved against each other since then, at most [m]
-  bool calm = false;    // in this step nothing of them moves far enough to be followed on its way
+  std::vector<Index>
+      triangles;       // those of the lists of nodes, and those around these nodes; rising
+  double moved = 0.0;  // how far its nodes have moved against each other since then, at most [m]
+  bool calm = false;   // in this step nothing of them moves far enough to be followed on its way
 
   bool known = false;  // the lists can be used again while nothing has moved by more than the skin
   double reach = 0.0;  // they are good for [m]
@@ -71,11 +72,11 @@ class NearLists {
     Vec3 travel = Vec3::Zero();  // of all references before this one [m]
     double drift = 0.0;          // the sum of their `off` [m]
     Spread from, to;
-    double size = 0.0;  // mean of its triangles [m]
+    double size = 0.0;   // mean of its triangles [m]
     double range = 0.0;  // the largest range of its nodes and edges, but for reach [m]
     BoxTree triangles;
     BoxTree edges;
-    int fitted = 0;  // the trees' boxes: 0 not in this step, 1 at its end, 2 swept
+    int fitted = 0;        // the trees' boxes: 0 not in this step, 1 at its end, 2 swept
     bool renewed = false;  // its reference is that of this step
   };
   Spread spread_of(Index o, const std::vector<Vec3>& x) const;

@@ -66,13 +66,14 @@ class Touching {
     return (a > sharp && b > concave) || (b > sharp && a > concave);
   }
 
-  // The contact of a node with an owner's surface, of which `triangles` holds at least those within node_range at either end of the step and those that it may meet on the way. The
-  // node may belong to that owner. `planes` (triangles) holds those of these triangles and of those
-  // around the node, at the end of the step. `calm`: no pair of them moves far enough to be followed
-  // on the way.
+  // The contact of a node with an owner's surface, of which `triangles` holds at least those within
+  // node_range at either end of the step and those that it may meet on the way. The node may belong
+  // to that owner. `planes` (triangles) holds those of these triangles and of those around the
+  // node, at the end of the step. `calm`: no pair of them moves far enough to be followed on the
+  // way.
   NodeTouch node_touches(Index node_slot, Index owner, const NearTriangles& triangles,
-                    std::span<const Plane> planes, bool calm, const Moves& moves,
-                    Contact& contact) const;
+                         std::span<const Plane> planes, bool calm, const Moves& moves,
+                         Contact& contact) const;
 
   // The contact of edge a with edge b, what is touched. False: none.
   bool edges_touch(Index a, Index b, bool calm, const Moves& moves, Contact& contact) const;
@@ -86,7 +87,6 @@ class Touching {
   double calm_motion(Index a, Index b) const;
 
   const TouchSurface& surface() const { return surface_; }
-  Index owner_of_triangle(Index t) const { return triangle_owner_[uz(t)]; }
   // The distance of a node from a triangle, of two edges, in the rest shape [m].
   double rest_distance(Index node, const Triangle& t) const;
   double rest_distance(const Edge& a, const Edge& b) const;

@@ -1,0 +1,97 @@
+// What finding contacts costs (docs/methods/contact.md): two beams W(k) that lie on each other, and
+// the liver against itself, at rest and while it is stretched.
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+#include "sinew/base/hash.h"
+#include "sinew/base/parallel.h"
+#include "sinew/base/random.h"
+#include "sinew/contact/surfaces.h"
+#include "sinew/forces/assemble.h"
+#include "sinew/mesh/shapes.h"
+#include "sinew/scene/build.h"
+
+namespace {
+
+using namespace sinew;
+
+void report(benchmark::State& state, const SurfaceContacts& contacts,
+            const std::vector<Contact>& found) {
+  Hash h;
+  for (const Contact& c : found) {
+    h.value(c.key);
+    h.value(c.gap);
+  }
+  state.SetLabel("contacts " + hex(h.digest()));
+  state.counters["contacts"] = static_cast<double>(found.size());
+  state.counters["lists"] = static_cast<double>(contacts.lists_made());
+}
+
+// As in explicit steps: nodes that tremble by a hundredth of a millimetre.
+void LyingBeams(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const Index k = static_cast<Index>(state.range(0));
+  Model model;
+  for (const double up : {0.0, 0.1}) {
+    BodySpec spec;
+    spec.name = up > 0.0 ? "upper" : "lower";
+    spec.mesh = beam(Vec3(0.1, 0.1, 0.4), {k, k, 4 * k});
+    for (Vec3& x : spec.mesh.nodes) x += Vec3(0.3 * up / k, up, 0.2 * up / k);
+    spec.materials = {Material{}};
+    spec.regions = {"rest"};
+    add_body(model, spec);
+  }
+  model.touch = Touch{};
+  finish(model);
+  build_touch_surface(model);
+  std::vector<std::vector<Vec3>> x(8, model.rest_position);
+  std::uint64_t n = 0;
+  for (auto& some : x) {
+    for (Vec3& p : some) p += 2e-5 * (random_point(n++) - Vec3::Constant(0.5));
+  }
+  SurfaceContacts contacts(model);
+  std::vector<Contact> found;
+  std::size_t step = 0;
+  for (auto _ : state) {
+    contacts.find(x[step % 8], x[(step + 1) % 8], 1e-5, found);
+    ++step;
+  }
+  contacts.find(x[0], x[1], 1e-5, found);
+  report(state, contacts, found);
+}
+
+// range(0): 1 the fine liver; range(1): 1 stretched by 0.3 % more in every step, to and fro.
+void LiverAgainstItself(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const std::string name = state.range(0) == 1 ? "liver-fine" : "liver";
+  Model model = build_model(load_scene(SINEW_SOURCE_DIR "/scenes/" + name + ".toml", {}));
+  model.touch = Touch{.bodies = true, .self = true};
+  build_touch_surface(model);
+  SurfaceContacts contacts(model);
+  std::vector<Contact> found;
+  std::vector<Vec3> x = model.rest_position;
+  int step = 0;
+  for (auto _ : state) {
+    if (state.range(1) == 1) {
+      state.PauseTiming();
+      const double by = step++ / 50 % 2 == 0 ? 1.003 : 1.0 / 1.003;
+      for (Vec3& p : x) p.x() *= by;
+      state.ResumeTiming();
+    }
+    contacts.find(x, x, 1e-5, found);
+  }
+  contacts.find(model.rest_position, model.rest_position, 1e-5, found);
+  report(state, contacts, found);
+}
+
+BENCHMARK(LyingBeams)->Arg(4)->Arg(8)->Arg(17)->Unit(benchmark::kMicrosecond);
+BENCHMARK(LiverAgainstItself)
+    ->ArgsProduct({{0, 1}, {0, 1}})
+    ->ArgNames({"fine", "stretched"})
+    ->Unit(benchmark::kMicrosecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();

@@ -1,0 +1,124 @@
+// Edges against edges: the part of Touching that is about them.
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/contact/meeting.h"
+#include "sinew/contact/touching.h"
+
+namespace sinew {
+namespace {
+
+constexpr std::uint64_t edge_kind = std::uint64_t{1} << 62;
+
+Vec3 unit(const Vec3& v) {
+  const double n = v.norm();
+  return n > 0.0 ? Vec3(v / n) : Vec3(Vec3::Zero());
+}
+
+bool joined(const Edge& a, const Edge& b) {
+  return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
+}
+
+}  // namespace
+
+double Touching::edge_size(Index edge) const {
+  double size = std::numeric_limits<double>::infinity();
+  for (const Index t : surface_.edge_triangles[uz(edge)]) {
+    if (t >= 0) size = std::min(size, surface_.triangle_size[uz(t)]);
+  }
+  return size;
+}
+
+double Touching::edge_range(Index edge, Index owner, double reach) const {
+  return std::max(reach, depth_share * std::min(edge_size(edge), largest_size_[uz(owner)]));
+}
+
+double Touching::rest_distance(const Edge& a, const Edge& b) const {
+  return segments_distance(rest_[uz(a[0])], rest_[uz(a[1])], rest_[uz(b[0])], rest_[uz(b[1])]);
+}
+
+bool Touching::edges_apart(Index a, Index b, double distance) const {
+  const Edge &e = surface_.edges[uz(a)], &f = surface_.edges[uz(b)];
+  return joined(e, f) || distance >= self_share * rest_distance(e, f);
+}
+
+// Whether the surface around an edge lies behind the plane through it with normal n, at a moment of
+// the step: n is then one of the normals at which the edge can be touched. `slack`: the sine of the
+// angle by which it may rise above.
+bool Touching::supports(Index edge, const Vec3& n, const Moves& m, double moment,
+                        double slack) const {
+  const Edge& e = surface_.edges[uz(edge)];
+  const auto at = [&](Index i) { return between(m.from[uz(i)], m.to[uz(i)], moment); };
+  const Vec3 a = at(e[0]);
+  const Vec3 along = unit(at(e[1]) - a);
+  Vec3 out = Vec3::Zero();
+  for (const Index t : surface_.edge_triangles[uz(edge)]) {
+    if (t < 0) return false;
+    const Triangle& tri = surface_.triangles[uz(t)];
+    for (const Index i : tri) {
+      if (i == e[0] || i == e[1]) continue;
+      const Vec3 r = at(i) - a;
+      const double height = (r - along.dot(r) * along).norm();
+      if (!(n.dot(r) <= slack * height)) return false;
+    }
+    const Vec3 p = at(tri[0]);
+    out += unit((at(tri[1]) - p).cross(at(tri[2]) - p));
+  }
+  return n.dot(out) > 0.0;
+}
+
+bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Contact& c) const {
+  const Edge &a = surface_.edges[uz(ea)], &b = surface_.edges[uz(eb)];
+  const auto& x = moves.to;
+  const OnLines on = nearest_on_lines(x[uz(a[0])], x[uz(a[1])], x[uz(b[0])], x[uz(b[1])]);
+  const bool over = !on.parallel && on.s > 0.0 && on.s < 1.0 && on.t > 0.0 && on.t < 1.0;
+  if (calm && !over) return false;
+  if (joined(a, b)) return false;
+  const double size = std::min(edge_size(ea), edge_size(eb));
+  const bool self = triangle_owner_[uz(surface_.edge_triangles[uz(ea)][0])] ==
+                    triangle_owner_[uz(surface_.edge_triangles[uz(eb)][0])];
+  c = Contact{};
+  c.count = 4;
+  c.friction = friction_;
+  c.restitution = restitution_;
+  c.node = {a[0], a[1], b[0], b[1]};
+  c.key = edge_kind | (static_cast<std::uint64_t>(ea) << 31) | static_cast<std::uint64_t>(eb);
+  const auto set = [&](double s, double t, const Vec3& n) {
+    c.weight = {1.0 - s, s, t - 1.0, -t};
+    c.normal = n;
+    c.gap = contact_gap(c, moves.to);
+  };
+
+  // At the end.
+  if (over) {
+    Vec3 n = unit((x[uz(a[1])] - x[uz(a[0])]).cross(x[uz(b[1])] - x[uz(b[0])]));
+    for (int turn = 0; turn < 2; ++turn, n = -n) {
+      if (!supports(eb, n, moves, 1.0, 0.1) || !supports(ea, -n, moves, 1.0, 0.1)) continue;
+      set(on.s, on.t, n);
+      if (!(c.gap < moves.reach || (c.gap <= 0.0 && moves.reach == 0.0))) continue;
+      if (c.gap < -depth_share * size) continue;
+      if (self && !(std::abs(c.gap) < self_share * rest_distance(a, b))) continue;
+      const double before = contact_gap(c, moves.from);
+      c.moment = before <= 0.0 ? 0.0 : (c.gap < 0.0 ? before / (before - c.gap) : 1.0);
+      return true;
+    }
+  }
+
+  // On the way.
+  if (calm) return false;
+  const auto move = [&](Index i) -> Vec3 { return moves.to[uz(i)] - moves.from[uz(i)]; };
+  double motion = 0.0;
+  for (const Index i : a) {
+    for (const Index j : b) motion = std::max(motion, (move(i) - move(j)).squaredNorm());
+  }
+  if (!(motion > calm_share * calm_share * size * size)) return false;
+  const Meeting hit = edge_meets_edge(motion_of(a[0], a[1], b[0], b[1], moves.from, moves.to));
+  if (!hit.met || (self && rest_distance(a, b) == 0.0)) return false;
+  if (!supports(eb, hit.normal, moves, hit.moment, 0.25)) return false;
+  if (!supports(ea, -hit.normal, moves, hit.moment, 0.25)) return false;
+  set(hit.weight[0], hit.weight[1], hit.normal);
+  c.moment = hit.moment;
+  return c.gap < moves.reach || (c.gap <= 0.0 && moves.reach == 0.0);
+}
+
+}  // namespace sinew

@@ -1,0 +1,79 @@
+#include "sinew/contact/meeting.h"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+namespace sinew {
+namespace {
+
+TEST(Meeting, RootsOfCubicsWithKnownOnes) {
+  std::mt19937 rng(1);
+  std::uniform_real_distribution<double> u(-0.5, 1.5);
+  for (int n = 0; n < 2000; ++n) {
+    std::array<double, 3> r = {u(rng), u(rng), u(rng)};
+    std::sort(r.begin(), r.end());
+    if (r[1] - r[0] < 1e-3 || r[2] - r[1] < 1e-3) continue;
+    const double s = n % 2 ? 1e-9 : -1e3;
+    const Cubic f = {{-s * r[0] * r[1] * r[2], s * (r[0] * r[1] + r[0] * r[2] + r[1] * r[2]),
+                      -s * (r[0] + r[1] + r[2]), s}};
+    const Roots found = crossings(f);
+    int expected = 0;
+    for (const double t : r) {
+      if (t <= 0.0 || t >= 1.0) continue;
+      ASSERT_LT(expected, found.count);
+      EXPECT_NEAR(found.t[static_cast<std::size_t>(expected++)], t, 1e-9);
+    }
+    EXPECT_EQ(found.count, expected);
+  }
+}
+
+TEST(Meeting, ANodeThatIsShotAtAPointOfATriangleThatMoves) {
+  std::mt19937 rng(2);
+  std::uniform_real_distribution<double> u(-1.0, 1.0), share(0.05, 1.0);
+  const auto vec = [&] { return Vec3(u(rng), u(rng), u(rng)); };
+  int met = 0;
+  for (int n = 0; n < 1000; ++n) {
+    NodeAndTriangle m;
+    m.a0 = vec(), m.b0 = vec(), m.c0 = vec();
+    m.a1 = m.a0 + 0.1 * vec(), m.b1 = m.b0 + 0.1 * vec(), m.c1 = m.c0 + 0.1 * vec();
+    // At `moment` it is at the place with these weights, from far in front of the triangle.
+    const double moment = 0.8 * share(rng);
+    Vec3 w(share(rng), share(rng), share(rng));
+    w /= w.sum();
+    const Vec3 a = between(m.a0, m.a1, moment), b = between(m.b0, m.b1, moment),
+               c = between(m.c0, m.c1, moment);
+    const Vec3 normal = (b - a).cross(c - a).normalized();
+    if ((b - a).cross(c - a).norm() < 0.3) continue;
+    const Vec3 way = -5.0 * normal + vec();
+    m.p0 = w[0] * a + w[1] * b + w[2] * c - moment * way;
+    m.p1 = m.p0 + way;
+    const Meeting hit = node_meets_triangle(m);
+    ASSERT_TRUE(hit.met);
+    EXPECT_NEAR(hit.moment, moment, 1e-9);
+    EXPECT_NEAR((hit.normal - normal).norm(), 0.0, 1e-7);
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(hit.weight[k], w[static_cast<Index>(k)], 1e-7);
+    std::swap(m.p0, m.p1);  // backwards it comes out, which is no meeting
+    std::swap(m.a0, m.a1), std::swap(m.b0, m.b1), std::swap(m.c0, m.c1);
+    EXPECT_FALSE(node_meets_triangle(m).met);
+    ++met;
+  }
+  EXPECT_GT(met, 500);
+}
+
+TEST(Meeting, EdgesThatCross) {
+  NodeAndTriangle m;  // along x, falling from 1 to -1; along z at height 0, at rest
+  m.p0 = Vec3(-1, 1, 0), m.a0 = Vec3(1, 1, 0), m.p1 = Vec3(-1, -1, 0), m.a1 = Vec3(1, -1, 0);
+  m.b0 = m.b1 = Vec3(0.5, 0, -1), m.c0 = m.c1 = Vec3(0.5, 0, 3);
+  const Meeting hit = edge_meets_edge(m);
+  ASSERT_TRUE(hit.met);
+  EXPECT_NEAR(hit.moment, 0.5, 1e-12);
+  EXPECT_NEAR(hit.weight[0], 0.75, 1e-12);
+  EXPECT_NEAR(hit.weight[1], 0.25, 1e-12);
+  EXPECT_LT((hit.normal - Vec3::UnitY()).norm(), 1e-12);
+  m.b0 = m.b1 = Vec3(1.5, 0, -1), m.c0 = m.c1 = Vec3(1.5, 0, 3);
+  EXPECT_FALSE(edge_meets_edge(m).met);
+}
+
+}  // namespace
+}  // namespace sinew
