@@ -26,10 +26,14 @@ export interface QuantityInfo {
   signed: boolean;
 }
 
-/** A rigid sphere of the scene. */
+/** A rigid thing of the scene. */
 export interface ObstacleInfo {
   name: string;
-  radius: number; // [m]
+  radius: number; // of a ball around it [m]; 0 of a plane
+  shape: "sphere" | "plane" | "capsule" | "box" | "mesh";
+  half: Vec; // box: half sides; capsule: z, half the distance of its ends' centres [m]
+  vertices?: number[]; // mesh: x, y, z, ... in its own axes [m]
+  triangles?: number[]; // mesh: indices of vertices
 }
 
 /** A half of the tets that is not shown: those whose middle X at rest has normal · X > offset [m]. */
@@ -79,6 +83,7 @@ export interface SphereStatus {
   radius: number; // [m]
   force: Vec; // on it [N]
   contacts: number;
+  turn?: [number, number, number, number]; // of its own axes: quaternion x, y, z, w
 }
 
 export interface Status {

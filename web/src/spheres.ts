@@ -1,4 +1,4 @@
-// The rigid spheres: obstacles of the scene and the ball, where the simulation has them.
+// What is rigid: obstacles of the scene and the ball, where the simulation has them.
 import * as THREE from "three";
 import { si } from "./format";
 import { glass, GLASS_ORDER, nearestOnly } from "./glass";
@@ -10,24 +10,47 @@ import { Track } from "./track";
 const LEAST_FORCE = 1e-3; // [N] that is worth a label
 const GROWTH = 0.3; // share of the way to another radius, a picture
 const SHAPE = new THREE.SphereGeometry(1, 64, 40);
+const PLANE = 4; // diagonals of the bodies that a plane is shown wide
 
-/** A sphere with its force, and once more beside a compared body. */
+/** What an obstacle that is no sphere looks like, in its own axes and in metres. */
+function geometryOf(o: ObstacleInfo, diagonal: number): THREE.BufferGeometry | null {
+  if (o.shape === "box") return new THREE.BoxGeometry(2 * o.half[0], 2 * o.half[1], 2 * o.half[2]);
+  if (o.shape === "capsule") return new THREE.CapsuleGeometry(o.half[0], 2 * o.half[2], 16, 40).rotateX(Math.PI / 2);
+  if (o.shape === "plane") return new THREE.CircleGeometry((PLANE / 2) * diagonal, 64).rotateX(-Math.PI / 2);
+  if (o.shape !== "mesh") return null;
+  const soup = new THREE.BufferGeometry();
+  soup.setAttribute("position", new THREE.Float32BufferAttribute(o.vertices ?? [], 3));
+  soup.setIndex(o.triangles ?? []);
+  const flat = soup.toNonIndexed();
+  flat.computeVertexNormals();
+  return flat;
+}
+
+/** A rigid thing with its force, and once more beside a compared body. */
 class Sphere {
   readonly group = new THREE.Group();
   readonly twin: THREE.Group;
   private readonly track = new Track();
   private readonly label: Label;
+  private readonly turn = new THREE.Quaternion();
 
-  constructor(labels: HTMLElement, className: string, materials: THREE.Material[], private radius: number) {
+  /** `own`: what it looks like in metres; null: a sphere, which may change its radius. */
+  constructor(
+    labels: HTMLElement,
+    className: string,
+    materials: THREE.Material[],
+    private radius: number,
+    private readonly own: THREE.BufferGeometry | null = null,
+  ) {
     materials.forEach((material, i) => {
-      const mesh = new THREE.Mesh(SHAPE, material);
+      const mesh = new THREE.Mesh(own ?? SHAPE, material);
       mesh.castShadow = i === 0;
       mesh.receiveShadow = true;
       // The last one is what is seen; before it, what hides its far side.
       mesh.renderOrder = material.transparent ? GLASS_ORDER + 2 + i : 0;
       this.group.add(mesh);
     });
-    this.group.scale.setScalar(radius);
+    if (!own) this.group.scale.setScalar(radius);
     this.twin = this.group.clone();
     this.group.visible = this.twin.visible = false;
     this.label = new Label(labels, className);
@@ -35,7 +58,8 @@ class Sphere {
 
   hear(status: SphereStatus, time: number): void {
     this.track.hear(status.center, time);
-    this.radius = status.radius;
+    if (!this.own) this.radius = status.radius;
+    if (status.turn) this.turn.set(...status.turn);
     const force = Math.hypot(...status.force);
     this.label.write(force < LEAST_FORCE ? "" : si(force, "N", force < 1 ? 2 : 3));
   }
@@ -46,18 +70,22 @@ class Sphere {
     const appears = !this.group.visible;
     this.group.visible = true;
     const moved = this.track.follow(this.group.position, time, now, this.radius);
-    const grows = Math.abs(this.radius / this.group.scale.x - 1) > 0.01;
+    const grows = !this.own && Math.abs(this.radius / this.group.scale.x - 1) > 0.01;
+    const turns = this.group.quaternion.angleTo(this.turn) > 1e-4;
+    if (turns) this.group.quaternion.slerp(this.turn, appears ? 1 : GROWTH);
+    this.twin.quaternion.copy(this.group.quaternion);
     if (grows) this.group.scale.setScalar(THREE.MathUtils.lerp(this.group.scale.x, this.radius, GROWTH));
     this.twin.scale.copy(this.group.scale);
     this.twin.visible = beside.lengthSq() > 0;
     this.twin.position.copy(this.group.position).add(beside);
     const pixels = this.radius / stage.metresPerPixel();
     this.label.place(stage, this.group.position, 0.74 * pixels + 6, -0.74 * pixels - 20);
-    return moved || grows || appears;
+    return moved || grows || turns || appears;
   }
 
   remove(): void {
     this.label.remove();
+    this.own?.dispose();
     this.group.removeFromParent();
     this.twin.removeFromParent();
   }
@@ -73,6 +101,15 @@ export class Spheres {
     roughness: 0.38,
     clearcoat: 0.7,
     clearcoatRoughness: 0.25,
+  });
+  // Seen from both sides, and through: what is in a bowl or behind a wall matters.
+  private readonly sheet = new THREE.MeshPhysicalMaterial({
+    color: 0x8ea2b4,
+    roughness: 0.45,
+    side: THREE.DoubleSide,
+    transparent: true,
+    opacity: 0.45,
+    depthWrite: false,
   });
   // One has to see what the ball does to the tissue behind it.
   private readonly amber = [nearestOnly(), glass({ color: 0xffc763, clear: 0.34, rim: 0.95 })];
@@ -92,12 +129,15 @@ export class Spheres {
     return this.obstacles.map((o) => o.group.position.toArray() as Vec);
   }
 
-  showScene(opened: number, obstacles: ObstacleInfo[]): void {
+  showScene(opened: number, obstacles: ObstacleInfo[], diagonal: number): void {
     const key = JSON.stringify([opened, obstacles]);
     if (key === this.known) return;
     this.known = key;
     for (const o of this.obstacles) o.remove();
-    this.obstacles = obstacles.map((o) => new Sphere(this.labels, "force steel", [this.steel], o.radius));
+    this.obstacles = obstacles.map((o) => {
+      const material = o.shape === "plane" || o.shape === "mesh" ? this.sheet : this.steel;
+      return new Sphere(this.labels, "force steel", [material], o.radius, geometryOf(o, diagonal));
+    });
     for (const o of this.obstacles) this.group.add(o.group, o.twin);
   }
 

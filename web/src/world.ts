@@ -52,7 +52,7 @@ export class World {
   showScene(scene: SceneInfo, arrangement: Arrangement): void {
     const before = this.scene?.compare ?? "";
     this.scene = scene;
-    this.spheres.showScene(scene.opened, scene.obstacles);
+    this.spheres.showScene(scene.opened, scene.obstacles, scene.diagonal);
     this.tissue.compared.name(titlesOf(scene));
     if (before !== scene.compare && (!before || !scene.compare)) this.arrange(arrangement);
   }
@@ -68,7 +68,7 @@ export class World {
     status.obstacles.forEach(({ center }, i) => {
       const at = new THREE.Vector3(...center);
       if (this.box.distanceToPoint(at) > NEAR * this.scene!.diagonal) return;
-      all.union(new THREE.Box3().setFromCenterAndSize(at, new THREE.Vector3().setScalar(2 * this.scene!.obstacles[i].radius)));
+      all.union(new THREE.Box3().setFromCenterAndSize(at, new THREE.Vector3().setScalar(2 * Math.min(this.scene!.obstacles[i].radius, this.scene!.diagonal))));
     });
     if (!all.equals(this.box)) this.fit(all);
   }
@@ -143,7 +143,8 @@ export class World {
 
   /** Sees body and obstacles as they are now, from a direction. */
   look(from: Vec, room?: number): void {
-    const radii = this.scene?.obstacles.map((o) => o.radius) ?? [];
+    // A table is larger than what matters of it.
+    const radii = this.scene?.obstacles.map((o) => Math.min(o.radius, this.scene!.diagonal)) ?? [];
     const boxes = this.spheres.obstaclesAt.map((at, i) =>
       new THREE.Box3().setFromCenterAndSize(new THREE.Vector3(...at), new THREE.Vector3().setScalar(2 * radii[i])));
     this.stage.look([this.tissue.box, ...boxes], new THREE.Vector3(...from).normalize(), room);

@@ -98,7 +98,7 @@ void Ball::hold(Model& model, State& state, double stable_step) {
 std::optional<SphereStatus> Ball::status(const Model& model, const State& state) const {
   if (!there_) return std::nullopt;
   const ObstacleReading r = read_obstacles(model, state.position, state.time).back();
-  return SphereStatus{r.center, obstacle_.radius, r.force, r.contacts};
+  return SphereStatus{r.center, obstacle_.radius, r.force, r.contacts, Mat3::Identity()};
 }
 
 }  // namespace sinew::live

@@ -31,12 +31,13 @@ struct HandStatus {
   Vec3 force = Vec3::Zero();   // on the tissue [N]
 };
 
-// A sphere that pushes: an obstacle of the scene or the ball tool.
+// A rigid thing that pushes: an obstacle of the scene or the ball tool, a sphere.
 struct SphereStatus {
-  Vec3 center = Vec3::Zero();  // [m]
-  double radius = 0.0;         // [m]
-  Vec3 force = Vec3::Zero();   // of the bodies on it [N]
-  std::int64_t contacts = 0;   // nodes that it pushes
+  Vec3 center = Vec3::Zero();    // [m]
+  double radius = 0.0;           // [m]
+  Vec3 force = Vec3::Zero();     // of the bodies on it [N]
+  std::int64_t contacts = 0;     // nodes that it pushes
+  Mat3 turn = Mat3::Identity();  // its own axes in the world, as columns
 };
 
 // How far the compared body is from the first.
@@ -93,11 +94,15 @@ struct Parameters {
   std::string scene, title, look_for;
   std::uint32_t opened = 0;  // counts scenes loaded, from 1
   std::vector<std::string> probes;
-  struct Sphere {
+  struct Rigid {
     std::string name;
-    double radius = 0.0;  // [m]
+    double radius = 0.0;           // of a ball around it [m]; 0 of a plane
+    std::string shape = "sphere";  // the word of scenes
+    Vec3 half = Vec3::Zero();      // box: half sides; capsule: radius, radius, half its length [m]
+    std::vector<Vec3> vertices;    // mesh: from its centre, in its own axes [m]
+    std::vector<Triangle> triangles;  // mesh: indices into vertices
   };
-  std::vector<Sphere> obstacles;
+  std::vector<Rigid> obstacles;
   std::string compare;  // the law compared with, or empty
   Cut cut;
   bool springs_shown = false;

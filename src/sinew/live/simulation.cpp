@@ -21,6 +21,24 @@
 namespace sinew::live {
 namespace {
 
+// What is shown of an obstacle.
+Parameters::Rigid rigid_of(const Model& model, const Obstacle& o, const std::string& shape) {
+  Parameters::Rigid out{o.name, o.radius, shape, o.half, {}, {}};
+  if (o.shape == ObstacleShape::capsule) {
+    out.half = Vec3(o.radius, o.radius, o.half.z());
+    out.radius += o.half.z();
+  }
+  if (o.shape == ObstacleShape::box) out.radius = o.half.norm();
+  const Pose rest{o.center, o.rotation};
+  for (Index i = o.nodes.begin; i < o.nodes.end; ++i) {
+    out.vertices.push_back(rest.own(model.rest_position[uz(i)]));
+    out.radius = std::max(out.radius, out.vertices.back().norm());
+  }
+  for (const Triangle& t : o.triangles)
+    out.triangles.push_back({t[0] - o.nodes.begin, t[1] - o.nodes.begin, t[2] - o.nodes.begin});
+  return out;
+}
+
 // No run of the live view comes to an end by itself [s].
 constexpr double for_ever = 1e9;
 // How much is measured before the speed is said anew [s] of wall time.
@@ -174,7 +192,8 @@ void Simulation::remember_parameters() {
   }
   p->opened = opened_;
   for (const Probe& probe : model_->probes) p->probes.push_back(probe.name);
-  for (const SceneObstacle& o : scene_.obstacles) p->obstacles.push_back({o.name, o.radius});
+  for (std::size_t o = 0; o < scene_.obstacles.size(); ++o)
+    p->obstacles.push_back(rigid_of(*model_, model_->obstacles[o], scene_.obstacles[o].shape));
   p->compare = compare_;
   p->cut = cut_;
   p->springs_shown = springs_;
@@ -315,8 +334,9 @@ Status Simulation::status() {
   }
   for (const ObstacleReading& o : read_obstacles(*model_, run_.state)) {
     if (s.obstacles.size() == scene_.obstacles.size()) break;  // the ball comes last
-    const double radius = model_->obstacles[s.obstacles.size()].radius;
-    s.obstacles.push_back({o.center, radius, o.force, o.contacts});
+    const Obstacle& obstacle = model_->obstacles[s.obstacles.size()];
+    const Mat3 turn = obstacle_pose(obstacle, run_.state.time).turn;
+    s.obstacles.push_back({o.center, obstacle.radius, o.force, o.contacts, turn});
   }
   s.ball = ball_.status(*model_, run_.state);
   if (other_) s.distance = distance_between(pair_.mine, pair_.others, model_->body_node_count());

@@ -191,6 +191,32 @@ Json sphere(const live::SphereStatus& s) {
           {"contacts", s.contacts}};
 }
 
+Json rigid_status(const live::SphereStatus& s) {
+  Json status = sphere(s);
+  const Eigen::Quaterniond turn(s.turn);
+  status["turn"] = {turn.x(), turn.y(), turn.z(), turn.w()};
+  return status;
+}
+
+// A mesh of more triangles is not shown.
+constexpr std::size_t most_triangles = 50'000;
+
+Json rigid(const live::Parameters::Rigid& r) {
+  Json out = {{"name", r.name}, {"radius", r.radius}, {"shape", r.shape}, {"half", vector(r.half)}};
+  if (r.shape != "mesh") return out;
+  Json vertices = Json::array();
+  Json triangles = Json::array();
+  if (r.triangles.size() <= most_triangles) {
+    for (const Vec3& x : r.vertices)
+      for (const double c : x) vertices.push_back(static_cast<float>(c));
+    for (const Triangle& t : r.triangles)
+      for (const Index corner : t) triangles.push_back(corner);
+  }
+  out["vertices"] = std::move(vertices);
+  out["triangles"] = std::move(triangles);
+  return out;
+}
+
 std::string dump(const Json& json) {
   return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
@@ -276,7 +302,7 @@ std::string scene_text(const live::Parameters& p, const live::Topology& t, std::
   }
   Json obstacles = Json::array();
   for (const auto& o : p.obstacles) {
-    obstacles.push_back({{"name", o.name}, {"radius", o.radius}});
+    obstacles.push_back(rigid(o));
   }
   Json laws = Json::array();
   for (const LawChoice& law : law_choices()) {
@@ -327,7 +353,7 @@ std::string status_text(const live::Status& s) {
   Json probes = Json::array();
   for (const Vec3& u : s.probes) probes.push_back(vector(u));
   Json obstacles = Json::array();
-  for (const live::SphereStatus& o : s.obstacles) obstacles.push_back(sphere(o));
+  for (const live::SphereStatus& o : s.obstacles) obstacles.push_back(rigid_status(o));
   Json distance = nullptr;
   if (s.distance) distance = {{"largest", s.distance->largest}, {"mean", s.distance->mean}};
   const Energies& e = s.energy;
