@@ -71,7 +71,7 @@ TEST(Ground, RestitutionHalvesTheSpeedAndQuartersTheHeight) {
 TEST(Ground, ComesToRestOnThePlaneAndStaysThere) {
   Ball ball(Vec3(0, 0.1, 0), Vec3::Zero(), 0.5, 0.5);
   for (int i = 0; i < 20'000; ++i) ball.step(1e-3);
-  EXPECT_EQ(ball.state.position[0].y(), 0.0);
+  EXPECT_NEAR(ball.state.position[0].y(), 0.0, 1e-18);
   EXPECT_NEAR(ball.dissipated, 2.0 * 10.0 * 0.1, 0.01);
 }
 
@@ -100,10 +100,15 @@ TEST(Ground, SlopeHoldsBelowTheFrictionAngleAndLetsGoAboveIt) {
   }
 }
 
-TEST(Ground, NodesThatStartBelowAreLifted) {
-  Ball ball(Vec3(0, -0.2, 0), Vec3::Zero(), 1.0, 0.0);
-  ball.step(1e-3);
-  EXPECT_EQ(ball.state.position[0].y(), 0.0);
+TEST(Ground, NodesThatStartBelowAreLedOutSlowly) {
+  Ball ball(Vec3(0, -0.02, 0), Vec3::Zero(), 0.0, 0.0);
+  double fastest = 0.0;
+  for (int i = 0; i < 1000; ++i) {
+    ball.step(1e-3);
+    fastest = std::max(fastest, ball.state.half_velocity[0].y());
+  }
+  EXPECT_NEAR(ball.state.position[0].y(), 0.0, 1e-12);
+  EXPECT_LE(fastest, 0.1 + 1e-12);
   std::vector<Vec3> x = {Vec3(1, -0.3, 2)};
   EXPECT_EQ(lift_onto_ground(ball.model, x), 1);
   EXPECT_EQ(x[0], Vec3(1, 0, 2));

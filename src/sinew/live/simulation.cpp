@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "sinew/base/error.h"
+#include "sinew/contact/find.h"
 #include "sinew/forces/springs.h"
 #include "sinew/live/carry_over.h"
 #include "sinew/live/look.h"
@@ -68,9 +69,10 @@ bool leaves_the_choice(const Scene& scene) {
                       [&](std::string_view key) { return root.find(key) != nullptr; });
 }
 
-// Restitution, and limits after every step, are better known to explicit steps.
+// Restitution, contacts, and limits after every step, are better known to explicit steps.
 bool knows_implicit(const Model& model) {
-  return !model.ground && model.limited.empty() && !model.has_volume_limit;
+  return !model.ground && !ContactFinder::anything_to_find(model) && model.limited.empty() &&
+         !model.has_volume_limit;
 }
 
 // Of two trial steps the faster one [s].

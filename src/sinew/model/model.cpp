@@ -1,5 +1,7 @@
 #include "sinew/model/model.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "sinew/base/hash.h"
@@ -25,6 +27,12 @@ void hash_path(Hash& h, const Path& path) {
 }
 
 }  // namespace
+
+bool Model::bounces() const {
+  return (ground && ground->restitution > 0.0) || (touch && touch->restitution > 0.0) ||
+         std::any_of(obstacles.begin(), obstacles.end(),
+                     [](const Obstacle& o) { return o.hard() && o.restitution > 0.0; });
+}
 
 std::uint64_t Model::hash() const {
   Hash h;

@@ -190,6 +190,9 @@ struct Model {
   // Nodes that belong to bodies; the anchors of attachments come after them.
   Index body_node_count() const { return bodies.empty() ? 0 : bodies.back().nodes.end; }
 
+  // Whether anything gives speed back on impact.
+  bool bounces() const;
+
   // Names everything that decides a run's result; equal models have equal hashes.
   std::uint64_t hash() const;
 

@@ -162,7 +162,7 @@ class Runner {
                       "limit_tolerance, or limits that the pins leave room for",
                       run.unmet_limits, run.state.step, remedy));
     }
-    if (model_.ground && model_.ground->restitution > 0.0 && scene_.stepper == "implicit") {
+    if (model_.bounces() && scene_.stepper == "implicit") {
       s.warnings.push_back("implicit steps know no restitution: every impact is plastic");
     }
     if (run.righting_steps > 0) {

@@ -52,7 +52,7 @@ double typed_step(double h) {
 
 // What only Verlet's step does; null where the scene has no such thing.
 const char* only_verlet_knows(const Model& model) {
-  return model.ground && model.ground->restitution > 0.0 ? "restitution" : nullptr;
+  return model.bounces() ? "restitution" : nullptr;
 }
 
 double seconds_since(Clock::time_point start) {
