@@ -253,7 +253,7 @@ const std::vector<Bad>& bad_scenes() {
        "  remedy: remove it: without a stiffness the obstacle is hard; only a sphere can be soft"},
       {BEAM "[obstacle.o]\ncenter = [0, 0, 0]\nradius = 1\nstiffness = \"sof\"\n",
        "scene.toml:6:13: 'stiffness' in [obstacle.o] is \"sof\"; expected a number or \"soft\" "
-       "(N/m3); did you mean 'soft'?\n"
+       "[N/m3]; did you mean 'soft'?\n"
        "  remedy: docs/scene-format.md says what 'stiffness' takes"},
       {BEAM "[obstacle.o]\ncenter = [0, 0, 0]\nradius = 1\nstiffness = 1\nfriction = 1\n",
        "scene.toml:7:12: 'friction' in [obstacle.o] goes with hard obstacles only, and "

@@ -181,8 +181,8 @@ void add_rod_contacts(const Rod& rod, const std::vector<Triangle>& triangles,
                        hit->crossed});
     }
   }
-  // An edge counts where both of its triangles have their nearest point on it, or where it was
-  // crossed; once.
+  // An edge counts once, if what its triangles see of the rod is outside. It need not be nearest in
+  // both: in a step that goes deep the two may differ, and the place would be let through.
   std::sort(edges.begin(), edges.end(), [](const EdgeHit& a, const EdgeHit& b) {
     return std::pair(a.edge, a.key) < std::pair(b.edge, b.key);
   });
@@ -194,7 +194,7 @@ void add_rod_contacts(const Rod& rod, const std::vector<Triangle>& triangles,
       facing += edges[end].facing;
       if (edges[end].crossed && !chosen->crossed) chosen = &edges[end];
     }
-    if (facing > 0.0 && (chosen->crossed || end - i >= 2)) {
+    if (facing > 0.0) {
       Contact c = chosen->contact;
       c.key = edges[i].key;
       out.push_back(c);
