@@ -151,7 +151,7 @@ void ImplicitFrame(benchmark::State& state) {
   state.counters["products"] = static_cast<double>(sum.products) / counted;
 }
 
-void LimitSweep(benchmark::State& state) {
+void SweepLimits(benchmark::State& state) {
   const ThreadLimit one(1);
   const Model model = model_of(
       state.range(0), {state.range(0) == 0 ? "liver.stretch_limit=0.1" : "beam.stretch_limit=0.1"});
@@ -183,7 +183,7 @@ BENCHMARK(ConjugateGradients)
     ->ArgsProduct({{4, 8, 17}, {300, 450, 490, 499}, {0}})
     ->ArgsProduct({{4, 8}, {450}, {3, 4, 5, 6, 7, 9}})
     ->Unit(benchmark::kMillisecond);
-BENCHMARK(LimitSweep)->Arg(4)->Arg(8)->Arg(0);
+BENCHMARK(SweepLimits)->Arg(4)->Arg(8)->Arg(0);
 BENCHMARK(StableStepSearch)->Arg(4)->Arg(8)->Arg(0)->Unit(benchmark::kMillisecond);
 
 BENCHMARK_MAIN();

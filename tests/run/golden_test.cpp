@@ -22,6 +22,7 @@ const std::string golden_file = SINEW_SOURCE_DIR "/tests/golden/hashes.txt";
 const std::map<std::string, double> golden_scenes = {{"beam", 0.5},
                                                      {"drop", 0.6},
                                                      {"ligament", 0.3},
+                                                     {"organs", 0.25},
                                                      {"liver", 0.2},
                                                      {"press", 0.3},
                                                      {"pull", 0.5},

@@ -23,6 +23,7 @@ Model pendulum() {
       {{Vec3::Zero(), 0.0}, {2.0 * Vec3(std::sin(start_angle), -std::cos(start_angle), 0), 1.0}});
   m.gravity = Vec3(0, -9.81, 0);
   add_distance(m, 0, 1, 2.0, false);
+  m.limit_sweeps = 20;
   finish(m);
   return m;
 }
@@ -60,7 +61,8 @@ TEST(Distances, APendulumOfVerletHasItsPeriodAndKeepsItsEnergy) {
   EXPECT_NEAR(period, exact_period(), 0.001 * period);
   const double swing = 9.81 * 2.0 * (1.0 - std::cos(start_angle));
   EXPECT_NEAR(measure_energies(m, s, w).total(), energy, 0.01 * swing);
-  EXPECT_NEAR(s.energy.dissipated, 0.0, 0.01 * swing);
+  // Projecting after the move takes energy, first order in the step.
+  EXPECT_NEAR(s.energy.dissipated, 0.0, 0.1 * swing);
 }
 
 TEST(Distances, APendulumOfImplicitStepsHasItsPeriod) {
@@ -101,7 +103,8 @@ TEST(Distances, AChainKeepsItsMomentumAndAngularMomentum) {
   for (int i = 0; i < 2000; ++i) ASSERT_TRUE(verlet_step(m, 1e-3, s, w).limits_met);
   const auto after = momenta();
   EXPECT_LT((after.first - before.first).norm(), 1e-11 * before.first.norm());
-  EXPECT_LT((after.second - before.second).norm(), 1e-3 * before.second.norm());
+  // The projection turns with the rods within a step: first order in the step.
+  EXPECT_LT((after.second - before.second).norm(), 1e-2 * before.second.norm());
 }
 
 // 1 kg and below it 3 kg, on ropes from two walls: rest and reactions by hand.
@@ -139,6 +142,7 @@ TEST(Distances, BodiesOnADistanceSwingWithoutGainingEnergy) {
   const Index to = test::nodes_at(m, 1, -0.15).front();
   const double length = (m.rest_position[uz(from)] - m.rest_position[uz(to)]).norm();
   add_distance(m, from, to, length, false);
+  m.limit_sweeps = 20;
   finish(m);
   State s = initial_state(m);
   Workspace w(m);

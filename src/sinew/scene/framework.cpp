@@ -23,7 +23,10 @@ constexpr std::string_view constraint_layout = "a constraint is: mesh vertex mes
 constexpr double platform_half = 100.0;
 constexpr double platform_depth = 10.0;
 constexpr std::int64_t platform_corners = 8;
-constexpr double surface_side = 25.0;      // that every axis of an OFF file is stretched to
+constexpr double surface_side = 25.0;  // that every axis of an OFF file is stretched to
+// Objects fall from tens of metres and are thrown back in full: what the impact squeezes is far
+// stiffer than it was, before the next look at the stable step.
+constexpr double safety = 0.3;
 constexpr double surface_mesh_size = 2.5;  // of the tets that it is filled with
 
 // The corners of the platform in the framework's order: those of the top, then those below.
@@ -81,6 +84,7 @@ class Translator {
                              distances_.entries.size() == 1 ? "" : "s"),
                  start));
     add(root, "duration", value_of(10.0, start));
+    add(root, "safety", value_of(safety, start));
     add(root, "body", std::move(bodies_));
     if (!pins_.entries.empty()) add(root, "pin", std::move(pins_));
     if (!distances_.entries.empty()) add(root, "distance", std::move(distances_));

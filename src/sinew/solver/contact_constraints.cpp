@@ -80,10 +80,9 @@ void ContactConstraints::find(const std::vector<Vec3>& x) {
   });
   for (const Contact& c : found_) {
     next.push_back(hold(c));
-    const auto same =
-        std::lower_bound(held_.begin(), held_.end(), c, [](const Held& h, const Contact& other) {
-          return comes_before(h.contact, other);
-        });
+    const auto same = std::lower_bound(
+        held_.begin(), held_.end(), c,
+        [](const Held& h, const Contact& other) { return comes_before(h.contact, other); });
     if (same == held_.end() || comes_before(c, same->contact)) continue;
     taken[static_cast<std::size_t>(same - held_.begin())] = 1;
     next.back().push = same->push;
