@@ -390,6 +390,12 @@ ConstraintError Constraints::update(const std::vector<Vec3>& x, const Workspace&
   return {std::max({ground, springs, cells, touching.distance}), std::max(grips, touching.grip)};
 }
 
+void Constraints::store(State& state) const {
+  state.reactions = now_;
+  state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
+  touching_.add_obstacle_forces(state.obstacle_force);
+}
+
 Index Constraints::contacts() const {
   return static_cast<Index>(std::count_if(now_.ground.begin(), now_.ground.end(),
                                           [](const Vec3& push) { return !push.isZero(0.0); }) +

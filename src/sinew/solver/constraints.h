@@ -79,7 +79,8 @@ class Constraints {
   }
 
   Index contacts() const;  // nodes that the ground pushes, and contacts that push
-  const Reactions& reactions() const { return now_; }
+  // Leaves the multipliers in the state, and what bodies push the obstacles with.
+  void store(State& state) const;
   ContactConstraints& touching() { return touching_; }
   const ContactConstraints& touching() const { return touching_; }
 

@@ -129,10 +129,8 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   report.ran_out = report.ran_out || newton.ran_out;
   report.contacts = constraints_->contacts();
   report.deepest = constraints_->touching().deepest(state.position);
-  state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
-  constraints_->touching().add_obstacle_forces(state.obstacle_force);
   report.within = report.within && newton.within;
-  state.reactions = constraints_->reactions();
+  constraints_->store(state);
   state.half_velocity = blend(1.0 / h, state.position, -1.0 / h, from);
   return newton.rests || (options.deadline && newton.force < no_limit);
 }

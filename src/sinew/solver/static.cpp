@@ -232,7 +232,7 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
     const Field start = state.position;
     if (nudge_ > 0.0) objective.inertial = &start;
     const NewtonReport once = minimise_within(objective, linear_, options, workspace_, state);
-    state.reactions = constraints_.reactions();
+    constraints_.store(state);
     constraints_.start(state, nullptr, 0.0);
     const int newton = report.newton + once.newton;
     const int products = report.products + once.products;
