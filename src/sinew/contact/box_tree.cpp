@@ -5,7 +5,7 @@
 
 namespace sinew {
 
-BoxTree::BoxTree(std::span<const Vec3> centres) {
+BoxTree::BoxTree(std::span<const Vec3> centres, Index leaf_size) : leaf_size_(leaf_size) {
   item_.resize(centres.size());
   std::iota(item_.begin(), item_.end(), 0);
   if (item_.empty()) return;
@@ -14,11 +14,11 @@ BoxTree::BoxTree(std::span<const Vec3> centres) {
   item_box_.resize(item_.size());
 }
 
-// Halves across the longest side, until leaf_size are left.
+// Halves across the longest side, until leaf_size_ are left.
 Index BoxTree::grow(std::span<const Vec3> centres, Range items) {
   const auto self = static_cast<Index>(node_.size());
   node_.push_back({items, -1});
-  if (items.size() <= leaf_size) return self;
+  if (items.size() <= leaf_size_) return self;
   Box box;
   for (Index i = items.begin; i < items.end; ++i) box.add(centres[uz(item_[uz(i)])]);
   Index axis = 0;
@@ -32,6 +32,16 @@ Index BoxTree::grow(std::span<const Vec3> centres, Range items) {
   grow(centres, {items.begin, middle});
   node_[uz(self)].right = grow(centres, {middle, items.end});
   return self;
+}
+
+std::vector<std::span<const Index>> BoxTree::leaves() const {
+  std::vector<std::span<const Index>> all;
+  for (const Node& node : node_) {
+    if (node.right >= 0) continue;
+    all.push_back(
+        std::span<const Index>(item_).subspan(uz(node.items.begin), uz(node.items.size())));
+  }
+  return all;
 }
 
 void BoxTree::refit(std::span<const Box> boxes) {

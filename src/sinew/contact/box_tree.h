@@ -37,8 +37,9 @@ struct Box {
 
 class BoxTree {
  public:
-  // The shape of the tree, from the items' centres: nearby ones share a branch.
-  explicit BoxTree(std::span<const Vec3> centres);
+  // The shape of the tree, from the items' centres: nearby ones share a branch. Leaves hold at most
+  // `leaf_size` items.
+  explicit BoxTree(std::span<const Vec3> centres, Index leaf_size = 4);
   BoxTree() = default;
 
   // The boxes of the items as they are now (items).
@@ -48,17 +49,20 @@ class BoxTree {
   const Box& bounds() const { return box_[0]; }
   bool empty() const { return item_.empty(); }
 
+  // The items leaf by leaf.
+  std::vector<std::span<const Index>> leaves() const;
+
   // Appends the items whose boxes overlap `box`, in the tree's order.
   void find(const Box& box, std::vector<Index>& items) const;
 
  private:
-  static constexpr Index leaf_size = 4;
   struct Node {
     Range items;       // of item_
     Index right = -1;  // the left child comes next; -1: a leaf
   };
   Index grow(std::span<const Vec3> centres, Range items);
 
+  Index leaf_size_ = 4;
   std::vector<Node> node_;
   std::vector<Box> box_;       // (nodes of the tree)
   std::vector<Index> item_;    // items, leaf by leaf

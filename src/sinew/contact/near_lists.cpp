@@ -10,39 +10,16 @@ namespace sinew {
 namespace {
 
 // Farther than its range, as a share of the triangles' size, that a list looks: larger skins last
-// longer and hold more.
+// longer and hold more. Of two bodies that lie on each other the lists are full; of a body with
+// itself they are empty unless it is folded.
 constexpr double skin_share = 0.12;
-
-template <std::size_t n>
-Box box_around(const std::array<Index, n>& nodes, bool swept, const Moves& m) {
-  Box b;
-  for (const Index i : nodes) {
-    b.add(m.to[uz(i)]);
-    if (swept) b.add(m.from[uz(i)]);
-  }
-  return b;
-}
-
-float rounded_down(double x) {
-  return static_cast<float>(x * (1.0 - 1e-6));
-}
-
-// Joins the lists of consecutive blocks.
-void join(const std::vector<NearList>& parts, NearList& list) {
-  list.key.clear();
-  list.item.clear();
-  list.far.clear();
-  list.start.assign(1, 0);
-  for (const NearList& part : parts) {
-    const Index offset = static_cast<Index>(list.item.size());
-    list.key.insert(list.key.end(), part.key.begin(), part.key.end());
-    list.item.insert(list.item.end(), part.item.begin(), part.item.end());
-    list.far.insert(list.far.end(), part.far.begin(), part.far.end());
-    for (std::size_t k = 1; k < part.start.size(); ++k) {
-      list.start.push_back(offset + part.start[k]);
-    }
-  }
-}
+constexpr double self_skin_share = 0.8;
+// Of the skin: lists that have used more of it are made anew; where some have to be, so are those
+// that have used more than the second, for fewer looks.
+constexpr double used_up = 0.8;
+constexpr double half_used = 0.4;
+// Of the triangles' size: tracks whose nodes have gone apart by more start anew.
+constexpr double stale_track = 0.02;
 
 }  // namespace
 
@@ -52,232 +29,234 @@ NearLists::NearLists(const Model& model, const Touching& touching) : touching_(t
   owners_.resize(uz(s.owner_count()));
   for (Index o = 0; o < s.owner_count(); ++o) {
     Owner& owner = owners_[uz(o)];
-    std::vector<Vec3> centres;
     const Range triangles = s.owner_triangles[uz(o)];
     for (Index t = triangles.begin; t < triangles.end; ++t) {
-      const Triangle& tri = s.triangles[uz(t)];
-      centres.push_back((x[uz(tri[0])] + x[uz(tri[1])] + x[uz(tri[2])]) / 3.0);
-      owner.size += s.triangle_size[uz(t)] / std::max(triangles.size(), 1);
+      owner.size += s.triangle_size[uz(t)] / triangles.size();
       owner.range = std::max(owner.range, Touching::depth_share * s.triangle_size[uz(t)]);
     }
-    owner.triangles = BoxTree(centres);
-    centres.clear();
-    const Range edges = s.owner_edges[uz(o)];
-    for (Index e = edges.begin; e < edges.end; ++e) {
-      const Edge& edge = s.edges[uz(e)];
-      centres.push_back(0.5 * (x[uz(edge[0])] + x[uz(edge[1])]));
-    }
-    owner.edges = BoxTree(centres);
     const Range nodes = s.owner_nodes[uz(o)];
-    for (Index n = nodes.begin; n < nodes.end; ++n) {
-      owner.reference.push_back(x[uz(s.nodes[uz(n)])]);
-      owner.reference_box.add(owner.reference.back());
-    }
+    owner.track = Track({s.nodes.begin() + nodes.begin, s.nodes.begin() + nodes.end}, x);
+    owner.parts.begin = part_count();
+    std::vector<SurfacePart> parts = parts_of(o, touching, x);
+    std::move(parts.begin(), parts.end(), std::back_inserter(parts_));
+    owner.parts.end = part_count();
   }
+  finder_ = std::make_unique<NearFinder>(touching_, parts_);
+  close_.resize(parts_.size());
   const Touch touch = model.touch.value_or(Touch{false, false, 0.0, 0.0});
   for (Index a = 0; a < s.owner_count(); ++a) {
     for (Index b = a; b < s.owner_count(); ++b) {
       const bool rigid = b >= s.body_count;
       if (a >= s.body_count || !(a == b ? touch.self : rigid || touch.bodies)) continue;
-      if (owners_[uz(a)].reference.empty() || owners_[uz(b)].reference.empty()) continue;
-      NearPair pair;
+      if (owners_[uz(a)].parts.size() == 0 || owners_[uz(b)].parts.size() == 0) continue;
+      NearPair& pair = pairs_.emplace_back();
       pair.a = a;
       pair.b = b;
-      pairs_.push_back(pair);
     }
   }
 }
 
-NearLists::Spread NearLists::spread_of(Index o, const std::vector<Vec3>& x) const {
-  const TouchSurface& s = touching_.surface();
-  const Owner& owner = owners_[uz(o)];
-  const Index first = s.owner_nodes[uz(o)].begin;
-  std::array<double, 3> lo, hi;  // plain numbers: six chains that the processor runs side by side
-  lo.fill(std::numeric_limits<double>::infinity());
-  hi.fill(-std::numeric_limits<double>::infinity());
-  const Index* node = s.nodes.data() + first;
-  for (std::size_t i = 0; i < owner.reference.size(); ++i) {
-    const Vec3& now = x[uz(node[i])];
-    const Vec3& then = owner.reference[i];
-    for (std::size_t c = 0; c < 3; ++c) {
-      const double u = now.data()[c] - then.data()[c];
-      lo[c] = u < lo[c] ? u : lo[c];
-      hi[c] = u > hi[c] ? u : hi[c];
+NearLists::~NearLists() = default;
+
+double NearLists::range_of(const NearPair& pair, double reach) const {
+  return std::max(reach, std::min(owners_[uz(pair.a)].range, owners_[uz(pair.b)].range));
+}
+
+double NearLists::skin_of(const NearPair& pair) const {
+  return (pair.a == pair.b ? self_skin_share : skin_share) *
+         std::min(owners_[uz(pair.a)].size, owners_[uz(pair.b)].size);
+}
+
+// Brings the tracks of the owner's parts to this step.
+void NearLists::look(Owner& owner, const Moves& moves) {
+  if (std::exchange(owner.looked, true)) return;
+  const bool slow = apart(owner.track.step(), owner.track.step()) <= 0.1 * skin_share * owner.size;
+  parallel_for(owner.parts.size(), [&](Index i) {
+    SurfacePart& part = parts_[uz(owner.parts.begin + i)];
+    part.track.look(moves, owner.track, slow);
+    part.fitted = false;
+  });
+  if (owner.track.since().off() > stale_track * owner.size) owner.track.renew(moves);
+}
+
+// Which parts of the pair are within range and skin of each other in this step; how far the others
+// are from being in range goes into `slack`.
+void NearLists::find_close(const NearPair& pair, double range, double skin, double& slack) {
+  const Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
+  const double most = apart(a.track.step(), b.track.step());
+  const double limit = range + skin + most;
+  part_boxes_.clear();
+  for (const Owner* o : {&a, &b}) {
+    for (Index p = o->parts.begin; p < o->parts.end; ++p) close_[uz(p)].clear();
+  }
+  for (Index q = b.parts.begin; q < b.parts.end; ++q) {
+    part_boxes_.add(parts_[uz(q)].track.end_box(), q);
+  }
+  const Box all = b.track.end_box();
+  for (Index p = a.parts.begin; p < a.parts.end; ++p) {
+    const RigidTrack& track = parts_[uz(p)].track;
+    const Box& box = track.end_box();
+    const double to_all = (box.lo - all.hi).cwiseMax(all.lo - box.hi).maxCoeff();
+    if (to_all > limit) {
+      slack = std::min(slack, to_all - most - range);
+      continue;
+    }
+    part_boxes_.gaps_to(box, gaps_);
+    for (Index q = pair.a == pair.b ? p : b.parts.begin; q < b.parts.end; ++q) {
+      double away = static_cast<double>(gaps_[uz(q - b.parts.begin)]);
+      if (away > limit) {
+        slack = std::min(slack, away - most - range);
+        continue;
+      }
+      // Where it comes from, seen from p, give or take.
+      const RigidTrack& other = parts_[uz(q)].track;
+      const Vec3 way = track.step().shift() - other.step().shift();
+      Box swept = other.end_box();
+      swept.lo += way.cwiseMin(Vec3::Zero());
+      swept.hi += way.cwiseMax(Vec3::Zero());
+      away = (box.lo - swept.hi).cwiseMax(swept.lo - box.hi).maxCoeff() - track.step().off() -
+             other.step().off();
+      if (away > range + skin) {
+        slack = std::min(slack, away - range);
+        continue;
+      }
+      close_[uz(p)].push_back({q, away});
+      if (p != q) close_[uz(q)].push_back({p, away});
     }
   }
-  Spread spread;
-  spread.lo = Vec3(lo[0], lo[1], lo[2]);
-  spread.hi = Vec3(hi[0], hi[1], hi[2]);
-  return spread;
 }
 
-// Makes the end of this step the owner's reference.
-void NearLists::renew(Index o, const Moves& moves) {
-  Owner& owner = owners_[uz(o)];
-  if (std::exchange(owner.renewed, true)) return;
-  owner.travel += owner.to.shift();
-  owner.drift += owner.to.off();
-  const TouchSurface& s = touching_.surface();
-  const Index first = s.owner_nodes[uz(o)].begin;
-  owner.reference_box = {};
-  for (std::size_t i = 0; i < owner.reference.size(); ++i) {
-    owner.reference[i] = moves.to[uz(s.nodes[uz(first) + i])];
-    owner.reference_box.add(owner.reference[i]);
+// How much of its skin [m] a part's lists have used, or parts outside them that come closer leave
+// of it; infinite where they do not hold what they have to. Sets `before`. `most`: at most so far
+// do the owners move in the step.
+double NearLists::used_of(NearPart& near, double range, double skin, double most,
+                          double reach) const {
+  constexpr double all = std::numeric_limits<double>::infinity();
+  if (!near.known || reach > near.reach) return all;
+  const RigidTrack& track = parts_[uz(near.part)].track;
+  double used = 0.0;
+  near.before = 0.0;
+  auto other = near.others.begin();
+  for (const Close& close : close_[uz(near.part)]) {
+    while (other != near.others.end() && other->part < close.part) ++other;
+    if (other == near.others.end() || other->part != close.part) {
+      used = std::max(used, skin - (close.gap - range));
+      continue;
+    }
+    const double way =
+        changed_since(track, near.mark, parts_[uz(other->part)].track, other->mark) + most;
+    if (!(way <= skin)) return all;
+    near.before = std::max(near.before, way);
   }
-  owner.to = {};
-  owner.from = spread_of(o, moves.from);
+  return std::max(used, near.before);
 }
 
-void NearLists::refit(Index o, int how, const Moves& moves) {
-  Owner& owner = owners_[uz(o)];
-  if (owner.fitted == how) return;
-  owner.fitted = how;
-  const TouchSurface& s = touching_.surface();
-  const auto fit = [&](const auto& all, Range range, BoxTree& tree) {
-    std::vector<Box> boxes(uz(range.size()));
-    parallel_for(range.size(), [&](Index i) {
-      boxes[uz(i)] = box_around(all[uz(range.begin + i)], how == 2, moves);
-    });
-    tree.refit(boxes);
+// New lists; returns how much of their skin the step uses, infinite where they are for it alone.
+double NearLists::build(const std::vector<NearPart*>& stale, double skin, const Moves& moves) {
+  const auto prepare = [&](Index p) {
+    SurfacePart& part = parts_[uz(p)];
+    if (part.fitted) return;
+    if (part.track.off() > stale_track * owners_[uz(part.owner)].size) part.track.renew(moves);
+    fit_boxes(part, touching_, moves.to);
   };
-  fit(s.triangles, s.owner_triangles[uz(o)], owner.triangles);
-  fit(s.edges, s.owner_edges[uz(o)], owner.edges);
-}
-
-// Holds the owner during the step.
-Box NearLists::box_of(const Owner& o) const {
-  Box box;
-  box.lo = o.reference_box.lo + o.from.lo.cwiseMin(o.to.lo);
-  box.hi = o.reference_box.hi + o.from.hi.cwiseMax(o.to.hi);
-  return box;
-}
-
-double NearLists::skin(const NearPair& pair) const {
-  return skin_share * std::min(owners_[uz(pair.a)].size, owners_[uz(pair.b)].size);
-}
-
-// At most so far do nodes of the pair's owners move against each other within the step.
-double NearLists::motion(const NearPair& pair) const {
-  const Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
-  const double off = a.from.off() + a.to.off() + b.from.off() + b.to.off();
-  if (pair.a == pair.b) return off;
-  return (a.to.shift() - a.from.shift() - b.to.shift() + b.from.shift()).norm() + off;
-}
-
-// How far nodes of the pair have moved against each other since its lists were made, at most, at
-// either end of the step.
-double NearLists::moved(const NearPair& pair) const {
-  const Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
-  double most = 0.0;
-  for (const bool end : {false, true}) {
-    const Spread &sa = end ? a.to : a.from, &sb = end ? b.to : b.from;
-    double way = a.drift + sa.off() + b.drift + sb.off() - pair.drift;
-    if (pair.a != pair.b) {
-      way += (a.travel + sa.shift() - b.travel - sb.shift() - pair.travel).norm();
-    }
-    if (!(way <= most)) most = way;
+  for (const NearPart* near : stale) {
+    prepare(near->part);
+    for (const Close& close : close_[uz(near->part)]) prepare(close.part);
   }
-  return 1.000001 * most + 1e-9 * skin(pair);
-}
-
-// Whether both ends of the step are within the skin of where the lists were made.
-bool NearLists::still_good(const NearPair& pair, double reach) const {
-  return pair.known && reach <= pair.reach && pair.moved <= skin(pair);
-}
-
-void NearLists::build_nodes(Index a, Index b, double more, bool swept, const Moves& moves,
-                            NearList& list) {
-  const TouchSurface& s = touching_.surface();
-  const BoxTree& tree = owners_[uz(b)].triangles;
-  const Range slots = s.owner_nodes[uz(a)];
-  const Index first = s.owner_triangles[uz(b)].begin;
-  std::vector<NearList> parts(uz(block_count(slots.size())));
-  parallel_blocks(slots.size(), [&](Index block_index, Range r) {
-    NearList& part = parts[uz(block_index)];
-    part.start.assign(1, 0);
-    std::vector<Index> found;
-    std::vector<std::pair<float, Index>> near;
-    for (Index slot = slots.begin + r.begin; slot < slots.begin + r.end; ++slot) {
-      const double range = touching_.node_range(slot, b, moves.reach) + more;
-      const std::array<Index, 1> node = {s.nodes[uz(slot)]};
-      found.clear();
-      tree.find(box_around(node, swept, moves).grown(range), found);
-      near.clear();
-      for (const Index f : found) {
-        const Index t = first + f;
-        if (swept) {
-          if (a != b || !touching_.node_apart(slot, t, 0.0)) near.emplace_back(0.0f, t);
-          continue;
-        }
-        const auto& x = moves.to;
-        const Triangle& tri = s.triangles[uz(t)];
-        const double distance = std::sqrt(
-            nearest_on_triangle(x[uz(node[0])], x[uz(tri[0])], x[uz(tri[1])], x[uz(tri[2])])
-                .distance2);
-        if (distance > range) continue;
-        if (a == b && touching_.node_apart(slot, t, distance - more)) continue;
-        near.emplace_back(rounded_down(distance), t);
-      }
-      if (near.empty()) continue;
-      std::sort(near.begin(), near.end());
-      for (const auto& [far, t] : near) {
-        part.item.push_back(t);
-        if (!swept) part.far.push_back(far);
-      }
-      part.key.push_back(slot);
-      part.start.push_back(static_cast<Index>(part.item.size()));
+  parallel_tasks(static_cast<Index>(stale.size()), [&](Index i) {
+    NearPart& near = *stale[uz(i)];
+    const RigidTrack& track = parts_[uz(near.part)].track;
+    near.mark = track.mark();
+    near.others.clear();
+    near.before = 0.0;
+    for (const Close& close : close_[uz(near.part)]) {
+      const RigidTrack& other = parts_[uz(close.part)].track;
+      near.others.push_back({close.part, other.mark()});
+      const double way = changed_since(track, near.mark, other, near.others.back().mark) +
+                         apart(track.step(), other.step()) + 1e-6 * skin;
+      near.before = std::max(near.before, way);
     }
+    // In a step that is longer than the skin the lists are of this step alone.
+    near.known = near.before <= used_up * skin;
+    near.reach = moves.reach;
+    finder_->make(near, near.known ? skin : 0.0, !near.known, moves);
   });
-  join(parts, list);
+  built_ += std::ssize(stale);
+  double used = 0.0;
+  for (const NearPart* near : stale) {
+    used = std::max(used, near->known ? near->before : std::numeric_limits<double>::infinity());
+  }
+  return used;
 }
 
-void NearLists::build_edges(Index a, Index b, double more, bool swept, const Moves& moves,
-                            NearList& list) {
-  const TouchSurface& s = touching_.surface();
-  const BoxTree& tree = owners_[uz(b)].edges;
-  const Range edges = s.owner_edges[uz(a)];
-  const Index first = s.owner_edges[uz(b)].begin;
-  std::vector<NearList> parts(uz(block_count(edges.size())));
-  parallel_blocks(edges.size(), [&](Index block_index, Range r) {
-    NearList& part = parts[uz(block_index)];
-    part.start.assign(1, 0);
-    std::vector<Index> found;
-    for (Index e = edges.begin + r.begin; e < edges.begin + r.end; ++e) {
-      if (s.edge_bend[uz(e)] <= Touching::concave || s.edge_triangles[uz(e)][1] < 0) continue;
-      const Edge& edge = s.edges[uz(e)];
-      const double range = touching_.edge_range(e, b, moves.reach) + more;
-      found.clear();
-      tree.find(box_around(edge, swept, moves).grown(range), found);
-      std::erase_if(found, [&](Index f) {
-        const Index other = first + f;
-        if ((a == b && other <= e) || !touching_.may_meet(e, other)) return true;
-        if (swept) return a == b && touching_.edges_apart(e, other, 0.0);
-        const auto& x = moves.to;
-        const Edge& o = s.edges[uz(other)];
-        const double distance =
-            segments_distance(x[uz(edge[0])], x[uz(edge[1])], x[uz(o[0])], x[uz(o[1])]);
-        return distance > range || (a == b && touching_.edges_apart(e, other, distance - more));
-      });
-      if (found.empty()) continue;
-      std::sort(found.begin(), found.end());
-      for (const Index f : found) part.item.push_back(first + f);
-      part.key.push_back(e);
-      part.start.push_back(static_cast<Index>(part.item.size()));
+// Looks at every part of the pair, and makes new lists where the old ones do not do any more.
+void NearLists::check(NearPair& pair, const Moves& moves) {
+  Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
+  look(a, moves);
+  look(b, moves);
+  const double range = range_of(pair, moves.reach), skin = skin_of(pair);
+  const double most = apart(a.track.step(), b.track.step()) + 1e-6 * skin;
+  pair.slack = std::numeric_limits<double>::infinity();
+  find_close(pair, range, skin, pair.slack);
+  if (pair.all.empty()) {
+    const auto add = [&](Range parts, Index owner) {
+      for (Index p = parts.begin; p < parts.end; ++p) {
+        NearPart& near = pair.all.emplace_back();
+        near.part = p;
+        near.owner = owner;
+      }
+    };
+    add(a.parts, pair.b);
+    if (pair.a != pair.b) add(b.parts, pair.a);
+  }
+  std::vector<double> used;
+  double most_used = 0.0;
+  for (NearPart& near : pair.all) {
+    used.push_back(used_of(near, range, skin, most, moves.reach));
+    most_used = std::max(most_used, used.back());
+  }
+  if (most_used > used_up * skin) {
+    std::vector<NearPart*> stale;
+    most_used = 0.0;
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      NearPart& near = pair.all[i];
+      if (used[i] <= half_used * skin) {
+        most_used = std::max(most_used, used[i]);
+      } else if (!close_[uz(near.part)].empty()) {
+        stale.push_back(&near);
+      } else {
+        near.nodes.clear();
+        near.edges.clear();
+        near.others.clear();
+        near.before = 0.0;
+        near.known = true;
+        near.reach = moves.reach;
+      }
     }
-  });
-  join(parts, list);
+    most_used = std::max(most_used, build(stale, skin, moves));
+    collect(pair);
+  }
+  pair.slack = std::min(pair.slack, skin - most_used);
+  pair.checked = true;
+  pair.reach = moves.reach;
+  pair.a_mark = a.track.mark();
+  pair.b_mark = b.track.mark();
 }
 
-void NearLists::list_triangles(NearPair& pair) {
+// The parts that have lists at all, and their triangles.
+void NearLists::collect(NearPair& pair) {
   const TouchSurface& s = touching_.surface();
   marked_.resize(s.triangles.size(), 0);
+  pair.parts.clear();
   pair.triangles.clear();
   const auto mark = [&](Index t) {
     if (std::exchange(marked_[uz(t)], 1) == 0) pair.triangles.push_back(t);
   };
-  for (const NearList* list : {&pair.nodes_of_a, &pair.nodes_of_b}) {
-    for (const Index t : list->item) mark(t);
-    for (const Index slot : list->key) {
+  for (const NearPart& near : pair.all) {
+    if (near.nodes.count() == 0 && near.edges.count() == 0) continue;
+    pair.parts.push_back(&near);
+    for (const Index t : near.nodes.item) mark(t);
+    for (const Index slot : near.nodes.key) {
       for (Index k = s.ring_start[uz(slot)]; k < s.ring_start[uz(slot) + 1]; ++k) {
         mark(s.ring[uz(k)]);
       }
@@ -287,53 +266,27 @@ void NearLists::list_triangles(NearPair& pair) {
   std::sort(pair.triangles.begin(), pair.triangles.end());
 }
 
-void NearLists::build(NearPair& pair, const Moves& moves) {
-  ++built_;
-  Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
-  // In a step that is longer than the skin the lists are of this step alone.
-  const bool swept = !(motion(pair) <= skin(pair));
-  const double more = swept ? 0.0 : skin(pair);
-  refit(pair.a, swept ? 2 : 1, moves);
-  refit(pair.b, swept ? 2 : 1, moves);
-  build_nodes(pair.a, pair.b, more, swept, moves, pair.nodes_of_a);
-  if (pair.a != pair.b) build_nodes(pair.b, pair.a, more, swept, moves, pair.nodes_of_b);
-  list_triangles(pair);
-  build_edges(pair.a, pair.b, more, swept, moves, pair.edges);
-  pair.known = !swept;
-  pair.reach = moves.reach;
-  pair.drift = a.drift + b.drift;
-  pair.travel = a.travel - b.travel;
-  pair.moved = moved(pair);
-}
-
 const std::vector<const NearPair*>& NearLists::update(const Moves& moves) {
-  for (std::size_t o = 0; o < owners_.size(); ++o) {
-    Owner& owner = owners_[o];
-    owner.fitted = 0;
-    owner.renewed = false;
-    if (owner.reference.empty()) continue;
-    owner.from = spread_of(static_cast<Index>(o), moves.from);
-    owner.to = spread_of(static_cast<Index>(o), moves.to);
+  for (Owner& owner : owners_) {
+    owner.looked = false;
+    owner.track.look(moves);
   }
   near_.clear();
-  std::vector<NearPair*> stale;
   for (NearPair& pair : pairs_) {
-    const Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
-    if (pair.a != pair.b) {
-      const double range = std::max(moves.reach, std::min(a.range, b.range));
-      if (!box_of(a).grown(range).overlaps(box_of(b))) continue;
+    const Track &a = owners_[uz(pair.a)].track, &b = owners_[uz(pair.b)].track;
+    if (pair.a != pair.b && !a.box().grown(range_of(pair, moves.reach)).overlaps(b.box())) {
+      pair.checked = false;
+      continue;
     }
+    // At either end of the step.
+    double since = moved_since(a, pair.a_mark, b, pair.b_mark) + apart(a.step(), b.step());
+    if (!pair.checked || moves.reach > pair.reach || !(since <= pair.slack)) {
+      check(pair, moves);
+      since = 0.0;
+    }
+    for (NearPart& near : pair.all) near.moved = near.before + since;
+    pair.calm = apart(a.step(), b.step()) <= touching_.calm_motion(pair.a, pair.b);
     near_.push_back(&pair);
-    pair.moved = moved(pair);
-    if (!still_good(pair, moves.reach)) stale.push_back(&pair);
-  }
-  for (const NearPair* pair : stale) {
-    renew(pair->a, moves);
-    renew(pair->b, moves);
-  }
-  for (NearPair* pair : stale) build(*pair, moves);
-  for (NearPair& pair : pairs_) {
-    pair.calm = motion(pair) <= touching_.calm_motion(pair.a, pair.b);
   }
   return near_;
 }

@@ -13,80 +13,91 @@ struct SurfaceContacts::Search {
       : touching(model),
         lists(model, touching),
         planes(model.surface.triangles.size()),
-        held(model.surface.nodes.size(), -1),
-        slot_of(model.rest_position.size(), -1) {
-    for (std::size_t i = 0; i < model.surface.nodes.size(); ++i) {
-      slot_of[uz(model.surface.nodes[i])] = static_cast<Index>(i);
-    }
-  }
+        held(model.surface.nodes.size(), -1) {}
 
-  void add_nodes(const NearPair& pair, const NearList& list, Index owner, Index pair_number,
-                 const Moves& moves, std::vector<Contact>& out);
-  void add_edges(const NearPair& pair, Index pair_number, const Moves& moves,
+  void add_nodes(const NearPart& near, bool calm, Index pair_number, const Moves& moves,
                  std::vector<Contact>& out);
+  void add_edges(const NearPart& near, bool self, bool calm, Index pair_number, const Moves& moves,
+                 std::vector<Contact>& out) const;
   bool carried(Index edge, Index pair_number) const;
 
   Touching touching;
   NearLists lists;
-  std::vector<Plane> planes;   // at the end of the step (triangles); those of the pair at hand
-  std::vector<Index> held;     // the pair in which the node is at the other owner (node slots)
-  std::vector<Index> slot_of;  // -1: not on a surface (nodes of the model)
+  std::vector<Plane> planes;  // at the end of the step (triangles); those of the pair at hand
+  std::vector<Index> held;    // the pair in which the node is at the other owner (node slots)
 };
 
 namespace {
 
-// Appends what `add(range, contacts)` finds in the blocks of [0, count), in their order.
+// Appends what `add(part, contacts)` finds, in the order of the parts.
 template <typename Add>
-void add_in_order(Index count, std::vector<Contact>& out, const Add& add) {
-  if (block_count(count) <= 1) {
-    add(Range{0, count}, out);
+void add_in_order(const std::vector<const NearPart*>& parts, std::vector<Contact>& out,
+                  const Add& add) {
+  constexpr Index chunk = 32;  // parts that are worth a task
+  const Index count = static_cast<Index>(parts.size());
+  if (count <= chunk) {
+    for (const NearPart* near : parts) add(*near, out);
     return;
   }
-  std::vector<std::vector<Contact>> parts(uz(block_count(count)));
-  parallel_blocks(count, [&](Index b, Range r) { add(r, parts[uz(b)]); });
-  for (const auto& part : parts) out.insert(out.end(), part.begin(), part.end());
+  std::vector<std::vector<Contact>> found(uz((count + chunk - 1) / chunk));
+  parallel_tasks(static_cast<Index>(found.size()), [&](Index c) {
+    for (Index i = c * chunk; i < std::min(count, (c + 1) * chunk); ++i) {
+      add(*parts[uz(i)], found[uz(c)]);
+    }
+  });
+  for (const auto& some : found) out.insert(out.end(), some.begin(), some.end());
+}
+
+// How far away the first of a key's items is at least, [m].
+double least_distance(const NearPart& near, const NearList& list, Index k) {
+  return static_cast<double>(list.far_of(k)[0]) - near.moved;
 }
 
 }  // namespace
 
-void SurfaceContacts::Search::add_nodes(const NearPair& pair, const NearList& list, Index owner,
-                                        Index pair_number, const Moves& moves,
-                                        std::vector<Contact>& out) {
-  add_in_order(list.count(), out, [&](Range r, std::vector<Contact>& found) {
-    for (Index k = r.begin; k < r.end; ++k) {
-      const Index slot = list.key[uz(k)];
-      const NodeTouch touch =
-          touching.node_touches(slot, owner, {list.of(k), list.far_of(k), pair.moved}, planes,
-                                pair.calm, moves, found.emplace_back());
-      if (touch != NodeTouch::touches) found.pop_back();
-      if (touch != NodeTouch::none) held[uz(slot)] = pair_number;
-    }
-  });
+void SurfaceContacts::Search::add_nodes(const NearPart& near, bool calm, Index pair_number,
+                                        const Moves& moves, std::vector<Contact>& out) {
+  const NearList& list = near.nodes;
+  for (Index k = 0; k < list.count(); ++k) {
+    const Index slot = list.key[uz(k)];
+    if (least_distance(near, list, k) > touching.node_range(slot, near.owner, moves.reach))
+      continue;
+    const NodeTouch touch =
+        touching.node_touches(slot, near.owner, {list.of(k), list.far_of(k), near.moved}, planes,
+                              calm, moves, out.emplace_back());
+    if (touch != NodeTouch::touches) out.pop_back();
+    if (touch != NodeTouch::none) held[uz(slot)] = pair_number;
+  }
 }
 
 // Whether both ends of an edge are at the other owner already: a flat edge there adds nothing.
 bool SurfaceContacts::Search::carried(Index edge, Index pair_number) const {
   const Edge& e = touching.surface().edges[uz(edge)];
-  return held[uz(slot_of[uz(e[0])])] == pair_number && held[uz(slot_of[uz(e[1])])] == pair_number;
+  return held[uz(touching.slot_of(e[0]))] == pair_number &&
+         held[uz(touching.slot_of(e[1]))] == pair_number;
 }
 
-void SurfaceContacts::Search::add_edges(const NearPair& pair, Index pair_number, const Moves& moves,
-                                        std::vector<Contact>& out) {
-  const TouchSurface& s = touching.surface();
-  const NearList& list = pair.edges;
-  add_in_order(list.count(), out, [&](Range r, std::vector<Contact>& found) {
-    for (Index k = r.begin; k < r.end; ++k) {
-      const Index a = list.key[uz(k)];
-      const bool a_sharp = s.edge_bend[uz(a)] > Touching::sharp;
-      const bool a_carried = carried(a, pair_number);
-      for (const Index b : list.of(k)) {
-        const bool b_sharp = s.edge_bend[uz(b)] > Touching::sharp;
-        if (!b_sharp && a_carried) continue;
-        if (!a_sharp && carried(b, pair_number)) continue;
-        if (!touching.edges_touch(a, b, pair.calm, moves, found.emplace_back())) found.pop_back();
-      }
+void SurfaceContacts::Search::add_edges(const NearPart& near, bool self, bool calm,
+                                        Index pair_number, const Moves& moves,
+                                        std::vector<Contact>& out) const {
+  const NearList& list = near.edges;
+  for (Index k = 0; k < list.count(); ++k) {
+    const Index a = list.key[uz(k)];
+    const double range = touching.edge_range(a, near.owner, moves.reach);
+    if (least_distance(near, list, k) > range) continue;
+    const bool a_sharp = touching.is_sharp(a, self);
+    const bool a_carried = carried(a, pair_number);
+    const auto others = list.of(k);
+    const auto far = list.far_of(k);
+    for (std::size_t i = 0; i < others.size(); ++i) {
+      const Index b = others[i];
+      if (static_cast<double>(far[i]) - near.moved > range) break;
+      const bool b_sharp = touching.is_sharp(b, self);
+      if (!b_sharp && a_carried) continue;
+      if (!a_sharp && carried(b, pair_number)) continue;
+      if (!touching.edges_touch(a, b, calm, moves, out.emplace_back())) out.pop_back();
     }
-  });
+  }
 }
 
 SurfaceContacts::SurfaceContacts(const Model& model) : search_(std::make_unique<Search>(model)) {}
@@ -109,9 +120,12 @@ void SurfaceContacts::find(const std::vector<Vec3>& from, const std::vector<Vec3
       const Index t = pair->triangles[uz(i)];
       search_->planes[uz(t)] = plane_of(to, search_->touching.surface().triangles[uz(t)]);
     });
-    search_->add_nodes(*pair, pair->nodes_of_a, pair->b, number, moves, out);
-    search_->add_nodes(*pair, pair->nodes_of_b, pair->a, number, moves, out);
-    search_->add_edges(*pair, number, moves, out);
+    add_in_order(pair->parts, out, [&](const NearPart& near, std::vector<Contact>& found) {
+      search_->add_nodes(near, pair->calm, number, moves, found);
+    });
+    add_in_order(pair->parts, out, [&](const NearPart& near, std::vector<Contact>& found) {
+      search_->add_edges(near, pair->a == pair->b, pair->calm, number, moves, found);
+    });
     ++number;
   }
   const auto by_key = [](const Contact& p, const Contact& q) { return p.key < q.key; };

@@ -21,10 +21,6 @@ OnTriangle nearest_on(const Vec3& p, const std::vector<Vec3>& x, const Triangle&
   return nearest_on_triangle(p, x[uz(t[0])], x[uz(t[1])], x[uz(t[2])]);
 }
 
-bool holds(const Triangle& t, Index node) {
-  return t[0] == node || t[1] == node || t[2] == node;
-}
-
 // How far the pair moves against each other within the step.
 double relative_motion(Index p, const Triangle& t, const Moves& m) {
   const Vec3 dp = m.to[uz(p)] - m.from[uz(p)];
@@ -58,13 +54,24 @@ Touching::Touching(const Model& model)
     smallest_size_.push_back(smallest);
   }
   for (const Triangle& t : surface_.triangles) rest_plane_.push_back(plane_of(rest_, t));
+  slot_of_.assign(rest_.size(), -1);
+  neighbour_start_.push_back(0);
   for (std::size_t i = 0; i < surface_.nodes.size(); ++i) {
+    slot_of_[uz(surface_.nodes[i])] = static_cast<Index>(i);
     Vec3 sum = Vec3::Zero();
+    std::vector<Index> around;
     for (Index k = surface_.ring_start[i]; k < surface_.ring_start[i + 1]; ++k) {
-      const Plane& plane = rest_plane_[uz(surface_.ring[uz(k)])];
+      const Index t = surface_.ring[uz(k)];
+      const Plane& plane = rest_plane_[uz(t)];
       sum += plane.length * plane.normal;
+      around.insert(around.end(), surface_.triangles[uz(t)].begin(),
+                    surface_.triangles[uz(t)].end());
     }
     rest_normal_.push_back(unit(sum));
+    std::sort(around.begin(), around.end());
+    around.erase(std::unique(around.begin(), around.end()), around.end());
+    neighbour_.insert(neighbour_.end(), around.begin(), around.end());
+    neighbour_start_.push_back(static_cast<Index>(neighbour_.size()));
   }
   for (std::size_t e = 0; e < surface_.edges.size(); ++e) {
     if (surface_.edge_triangles[e][1] != -1) continue;
@@ -97,6 +104,20 @@ bool Touching::on_boundary(Index t, const OnTriangle& on) const {
   return false;
 }
 
+bool Touching::adjoin(Index slot, const Triangle& t) const {
+  const auto near = neighbours(slot);
+  return std::any_of(t.begin(), t.end(),
+                     [&](Index i) { return std::find(near.begin(), near.end(), i) != near.end(); });
+}
+
+bool Touching::adjoin(const Edge& a, const Edge& b) const {
+  return std::any_of(a.begin(), a.end(), [&](Index i) {
+    const auto near = neighbours(slot_of(i));
+    return std::find(near.begin(), near.end(), b[0]) != near.end() ||
+           std::find(near.begin(), near.end(), b[1]) != near.end();
+  });
+}
+
 // The two sides of a slit: at rest they face each other over a gap, not over material.
 bool Touching::slit(Index slot, Index t, double apart) const {
   const Vec3& n = rest_plane_[uz(t)].normal;
@@ -106,9 +127,7 @@ bool Touching::slit(Index slot, Index t, double apart) const {
 }
 
 bool Touching::node_apart(Index slot, Index t, double distance) const {
-  const Index node = surface_.nodes[uz(slot)];
-  if (holds(surface_.triangles[uz(t)], node)) return true;
-  const double apart = rest_distance(node, surface_.triangles[uz(t)]);
+  const double apart = rest_distance(surface_.nodes[uz(slot)], surface_.triangles[uz(t)]);
   return distance >= self_share * apart && !slit(slot, t, apart);
 }
 
@@ -122,6 +141,7 @@ bool Touching::self_pair_counts(Index slot, Index t, const OnTriangle& on, doubl
                                 const std::vector<Vec3>& from) const {
   const Index node = surface_.nodes[uz(slot)];
   const Triangle& tri = surface_.triangles[uz(t)];
+  if (adjoin(slot, tri)) return false;
   const double apart = rest_distance(node, tri);
   if (!(std::sqrt(on.distance2) < self_share * apart)) return side < 0.0 && slit(slot, t, apart);
   if (side >= 0.0) return true;
@@ -194,7 +214,6 @@ Touching::Nearest Touching::nearest(Index slot, bool self, const NearTriangles& 
     }
     const Index t = triangles.triangle[k];
     const Triangle& tri = surface_.triangles[uz(t)];
-    if (self && holds(tri, node)) continue;
     const Plane& plane = plane_at(t);
     const Vec3 &a = x[uz(tri[0])], &b = x[uz(tri[1])], &c = x[uz(tri[2])];
     const Vec3 ab = b - a, ac = c - a, ap = p - a;
@@ -282,7 +301,8 @@ NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& t
     } else {
       for (const Index t : triangles.triangle) {
         const Triangle& tri = surface_.triangles[uz(t)];
-        if (!fast(t) || (self && (holds(tri, node) || rest_distance(node, tri) == 0.0))) continue;
+        if (!fast(t)) continue;
+        if (self && (adjoin(slot, tri) || rest_distance(node, tri) == 0.0)) continue;
         const Meeting m =
             node_meets_triangle(motion_of(node, tri[0], tri[1], tri[2], moves.from, moves.to));
         if (!m.met ||

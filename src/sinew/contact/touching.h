@@ -52,8 +52,11 @@ class Touching {
   static constexpr double depth_share = 0.35;
   static constexpr double calm_share = 0.15;
   static constexpr double self_share = 0.25;
-  static constexpr double sharp = 0.21;     // [rad] edges that turn by more meet other edges
-  static constexpr double concave = -0.09;  // [rad] edges that turn by less meet none
+  // Edges that turn by more meet other edges, of other bodies and of their own; those that turn by
+  // less than the last meet none [rad].
+  static constexpr double sharp = 0.21;
+  static constexpr double sharp_to_self = 0.6;
+  static constexpr double concave = -0.09;
 
   explicit Touching(const Model& model);
 
@@ -61,9 +64,12 @@ class Touching {
   // for triangles that it went through on the way.
   double node_range(Index node_slot, Index owner, double reach) const;
   double edge_range(Index edge, Index owner, double reach) const;
-  bool may_meet(Index edge, Index other) const {
-    const double a = surface_.edge_bend[uz(edge)], b = surface_.edge_bend[uz(other)];
-    return (a > sharp && b > concave) || (b > sharp && a > concave);
+  bool is_sharp(Index edge, bool self) const {
+    return surface_.edge_bend[uz(edge)] > (self ? sharp_to_self : sharp);
+  }
+  // Whether two edges, `self` of one body, meet at all: one is sharp and neither concave.
+  bool may_meet(Index edge, Index other, bool self) const {
+    return may_meet(edge) && may_meet(other) && (is_sharp(edge, self) || is_sharp(other, self));
   }
 
   // The contact of a node with an owner's surface, of which `triangles` holds at least those within
@@ -77,6 +83,23 @@ class Touching {
 
   // The contact of edge a with edge b, what is touched. False: none.
   bool edges_touch(Index a, Index b, bool calm, const Moves& moves, Contact& contact) const;
+
+  // Neighbours on a surface: the triangle is one of those around the node or around its neighbours;
+  // the edges share a node or have neighbours for nodes. They never touch: always near each other,
+  // they say nothing about a fold.
+  bool adjoin(Index node_slot, const Triangle& t) const;
+  bool adjoin(const Edge& a, const Edge& b) const;
+  // The nodes of the triangles around a node, rising.
+  std::span<const Index> neighbours(Index node_slot) const {
+    const auto begin = uz(neighbour_start_[uz(node_slot)]);
+    return std::span<const Index>(neighbour_)
+        .subspan(begin, uz(neighbour_start_[uz(node_slot) + 1]) - begin);
+  }
+  Index slot_of(Index node) const { return slot_of_[uz(node)]; }  // -1: not on a surface
+  // Whether an edge meets any other at all.
+  bool may_meet(Index edge) const {
+    return surface_.edge_bend[uz(edge)] > concave && surface_.edge_triangles[uz(edge)][1] >= 0;
+  }
 
   // Whether a node and a triangle, or two edges, of one body that are this far apart [m] or more
   // cannot be near enough to touch.
@@ -122,6 +145,9 @@ class Touching {
   bool supports(Index edge, const Vec3& n, const Moves& moves, double t, double slack) const;
 
   TouchSurface surface_;
+  std::vector<Index> neighbour_start_;     // offsets into neighbour_ (node slots + 1)
+  std::vector<Index> neighbour_;           // nodes around the node, rising
+  std::vector<Index> slot_of_;             // -1: not on a surface (nodes of the model)
   std::vector<Vec3> rest_;                 // [m] (nodes of the model)
   std::vector<Plane> rest_plane_;          // (triangles)
   std::vector<Vec3> rest_normal_;          // [-] unit (node slots)

@@ -15,10 +15,6 @@ Vec3 unit(const Vec3& v) {
   return n > 0.0 ? Vec3(v / n) : Vec3(Vec3::Zero());
 }
 
-bool joined(const Edge& a, const Edge& b) {
-  return a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1];
-}
-
 }  // namespace
 
 double Touching::edge_size(Index edge) const {
@@ -38,8 +34,7 @@ double Touching::rest_distance(const Edge& a, const Edge& b) const {
 }
 
 bool Touching::edges_apart(Index a, Index b, double distance) const {
-  const Edge &e = surface_.edges[uz(a)], &f = surface_.edges[uz(b)];
-  return joined(e, f) || distance >= self_share * rest_distance(e, f);
+  return distance >= self_share * rest_distance(surface_.edges[uz(a)], surface_.edges[uz(b)]);
 }
 
 // Whether the surface around an edge lies behind the plane through it with normal n, at a moment of
@@ -73,10 +68,10 @@ bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Co
   const OnLines on = nearest_on_lines(x[uz(a[0])], x[uz(a[1])], x[uz(b[0])], x[uz(b[1])]);
   const bool over = !on.parallel && on.s > 0.0 && on.s < 1.0 && on.t > 0.0 && on.t < 1.0;
   if (calm && !over) return false;
-  if (joined(a, b)) return false;
   const double size = std::min(edge_size(ea), edge_size(eb));
   const bool self = triangle_owner_[uz(surface_.edge_triangles[uz(ea)][0])] ==
                     triangle_owner_[uz(surface_.edge_triangles[uz(eb)][0])];
+  if (self && adjoin(a, b)) return false;
   c = Contact{};
   c.count = 4;
   c.friction = friction_;

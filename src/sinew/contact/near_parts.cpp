@@ -1,0 +1,224 @@
+#include "sinew/contact/near_parts.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/contact/nearest.h"
+
+namespace sinew {
+namespace {
+
+// Triangles in a part: more make each look at a part dearer, fewer need more of them.
+constexpr Index part_size = 80;
+
+float rounded_down(double x) {
+  return static_cast<float>(x - 1e-6 * std::abs(x));
+}
+
+Box box_of(const Vec3& x) {
+  return {x, x};
+}
+
+template <std::size_t n>
+Box box_around(const std::array<Index, n>& nodes, const std::vector<Vec3>& x) {
+  Box b;
+  for (const Index i : nodes) b.add(x[uz(i)]);
+  return b;
+}
+
+// Appends what is near a key, nearest first.
+void close_key(std::vector<std::pair<float, Index>>& near, Index key, NearList& list) {
+  if (near.empty()) return;
+  std::sort(near.begin(), near.end());
+  for (const auto& [far, item] : near) {
+    list.item.push_back(item);
+    list.far.push_back(far);
+  }
+  list.key.push_back(key);
+  list.start.push_back(static_cast<Index>(list.item.size()));
+}
+
+}  // namespace
+
+void NearList::clear() {
+  key.clear();
+  item.clear();
+  far.clear();
+  start.assign(1, 0);
+}
+
+std::vector<SurfacePart> parts_of(Index owner, const Touching& touching,
+                                  const std::vector<Vec3>& rest) {
+  const TouchSurface& s = touching.surface();
+  const Range triangles = s.owner_triangles[uz(owner)];
+  std::vector<Vec3> centres;
+  for (Index t = triangles.begin; t < triangles.end; ++t) {
+    const Triangle& tri = s.triangles[uz(t)];
+    centres.push_back((rest[uz(tri[0])] + rest[uz(tri[1])] + rest[uz(tri[2])]) / 3.0);
+  }
+  std::vector<SurfacePart> parts;
+  std::vector<Index> part_of(uz(triangles.size()));
+  const BoxTree tree(centres, part_size);
+  for (const auto& leaf : tree.leaves()) {
+    SurfacePart& part = parts.emplace_back();
+    part.owner = owner;
+    for (const Index i : leaf) {
+      part.triangles.push_back(triangles.begin + i);
+      part_of[uz(i)] = static_cast<Index>(parts.size()) - 1;
+    }
+    std::sort(part.triangles.begin(), part.triangles.end());
+    std::vector<Index> nodes;
+    for (const Index t : part.triangles) {
+      nodes.insert(nodes.end(), s.triangles[uz(t)].begin(), s.triangles[uz(t)].end());
+    }
+    std::sort(nodes.begin(), nodes.end());
+    nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
+    part.track = RigidTrack(nodes, rest);
+  }
+  const Range slots = s.owner_nodes[uz(owner)];
+  for (Index slot = slots.begin; slot < slots.end; ++slot) {
+    if (s.ring_start[uz(slot)] == s.ring_start[uz(slot) + 1]) continue;
+    const Index t = s.ring[uz(s.ring_start[uz(slot)])];
+    parts[uz(part_of[uz(t - triangles.begin)])].nodes.push_back(slot);
+  }
+  const Range edges = s.owner_edges[uz(owner)];
+  for (Index e = edges.begin; e < edges.end; ++e) {
+    if (!touching.may_meet(e)) continue;
+    const Index t = s.edge_triangles[uz(e)][0];
+    parts[uz(part_of[uz(t - triangles.begin)])].edges.push_back(e);
+  }
+  return parts;
+}
+
+void fit_boxes(SurfacePart& part, const Touching& touching, const std::vector<Vec3>& to) {
+  const TouchSurface& s = touching.surface();
+  part.triangle_boxes.clear();
+  for (const Index t : part.triangles) {
+    part.triangle_boxes.add(box_around(s.triangles[uz(t)], to), t);
+  }
+  for (const bool self : {false, true}) {
+    part.sharp_edges[self].clear();
+    part.other_edges[self].clear();
+  }
+  for (const Index e : part.edges) {
+    const Box box = box_around(s.edges[uz(e)], to);
+    for (const bool self : {false, true}) {
+      (touching.is_sharp(e, self) ? part.sharp_edges : part.other_edges)[self].add(box, e);
+    }
+  }
+  part.fitted = true;
+}
+
+// Marks the nodes that are neighbours of the node, next to those that are marked.
+void NearFinder::mark_neighbours(Index slot, Scratch& scratch) const {
+  for (const Index i : touching_.neighbours(slot)) scratch.mark[uz(i)] = scratch.now;
+}
+
+void NearFinder::list_nodes(const Search& search, Scratch& scratch, NearList& list) const {
+  const TouchSurface& s = touching_.surface();
+  const auto& x = search.moves.to;
+  const auto marked = [&](Index i) { return scratch.mark[uz(i)] == scratch.now; };
+  for (const Index slot : search.part.nodes) {
+    const Vec3& p = x[uz(s.nodes[uz(slot)])];
+    const double range = touching_.node_range(slot, search.owner, search.moves.reach) + search.more;
+    scratch.triangles.find(box_of(p).grown(range), scratch.found);
+    if (scratch.found.empty()) continue;
+    ++scratch.now;
+    if (search.self) mark_neighbours(slot, scratch);
+    scratch.near.clear();
+    for (const Index t : scratch.found) {
+      const Triangle& tri = s.triangles[uz(t)];
+      if (search.self && (marked(tri[0]) || marked(tri[1]) || marked(tri[2]))) continue;
+      double distance = 0.0;
+      if (!search.swept) {
+        distance = std::sqrt(
+            nearest_on_triangle(p, x[uz(tri[0])], x[uz(tri[1])], x[uz(tri[2])]).distance2);
+        if (distance > range) continue;
+        if (search.self && touching_.node_apart(slot, t, distance - search.more)) continue;
+      }
+      scratch.near.emplace_back(rounded_down(distance), t);
+    }
+    close_key(scratch.near, slot, list);
+  }
+}
+
+void NearFinder::list_edges(const Search& search, Scratch& scratch, NearList& list) const {
+  const TouchSurface& s = touching_.surface();
+  const auto& x = search.moves.to;
+  const auto marked = [&](Index i) { return scratch.mark[uz(i)] == scratch.now; };
+  for (const Index e : search.part.edges) {
+    const Edge& edge = s.edges[uz(e)];
+    const double range = touching_.edge_range(e, search.owner, search.moves.reach) + search.more;
+    const Box box = box_around(edge, x).grown(range);
+    ++scratch.now;
+    if (search.self) {
+      mark_neighbours(touching_.slot_of(edge[0]), scratch);
+      mark_neighbours(touching_.slot_of(edge[1]), scratch);
+    }
+    scratch.near.clear();
+    const auto look_at = [&](const Boxes& boxes) {
+      boxes.find(box, scratch.found);
+      for (const Index other : scratch.found) {
+        const Edge& o = s.edges[uz(other)];
+        if (search.self && (other <= e || marked(o[0]) || marked(o[1]))) continue;
+        double distance = 0.0;
+        if (!search.swept) {
+          distance = segments_distance(x[uz(edge[0])], x[uz(edge[1])], x[uz(o[0])], x[uz(o[1])]);
+          if (distance > range) continue;
+          if (search.self && touching_.edges_apart(e, other, distance - search.more)) continue;
+        }
+        scratch.near.emplace_back(rounded_down(distance), other);
+      }
+    };
+    look_at(scratch.sharp_edges);
+    if (touching_.is_sharp(e, search.self)) look_at(scratch.other_edges);
+    close_key(scratch.near, e, list);
+  }
+}
+
+void NearFinder::make(NearPart& near, double more, bool swept, const Moves& moves) {
+  near.nodes.clear();
+  near.edges.clear();
+  if (near.others.empty()) return;
+  const SurfacePart& part = parts_[uz(near.part)];
+  const Search search = {part, near.owner, part.owner == near.owner, more, swept, moves};
+  const bool with_edges = part.owner <= near.owner;  // the owner that comes first keeps them
+
+  Scratch& scratch = scratch_.local();
+  scratch.mark.resize(moves.to.size(), scratch.now);
+  for (Boxes* pool : {&scratch.triangles, &scratch.sharp_edges, &scratch.other_edges}) {
+    pool->clear();
+  }
+  double range = 0.0;
+  for (const Index slot : part.nodes) {
+    range = std::max(range, touching_.node_range(slot, near.owner, moves.reach));
+  }
+  if (with_edges) {
+    for (const Index e : part.edges) {
+      range = std::max(range, touching_.edge_range(e, near.owner, moves.reach));
+    }
+  }
+  const Box around = part.track.end_box().grown(range + more);
+  for (const NearPart::Other& near_other : near.others) {
+    // Seen from the part, the other comes from `way`, give or take what the nodes of both do.
+    const SurfacePart& other = parts_[uz(near_other.part)];
+    Vec3 way = Vec3::Zero();
+    double off = 0.0;
+    Box whole = around;
+    if (swept) {
+      way = part.track.step().shift() - other.track.step().shift();
+      off = part.track.step().off() + other.track.step().off();
+      whole.add(Box{around.lo - way, around.hi - way});
+      whole = whole.grown(off);
+    }
+    scratch.triangles.add_overlapping(other.triangle_boxes, whole, way, off);
+    if (!with_edges) continue;
+    const bool self = search.self;
+    scratch.sharp_edges.add_overlapping(other.sharp_edges[self], whole, way, off);
+    scratch.other_edges.add_overlapping(other.other_edges[self], whole, way, off);
+  }
+  list_nodes(search, scratch, near.nodes);
+  if (with_edges) list_edges(search, scratch, near.edges);
+}
+
+}  // namespace sinew

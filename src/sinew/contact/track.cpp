@@ -1,0 +1,178 @@
+#include "sinew/contact/track.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace sinew {
+namespace {
+
+// Lowest and highest of three coordinates, as plain numbers: chains that the processor runs side by
+// side.
+struct Extent {
+  std::array<double, 3> lo, hi;
+  Extent() {
+    lo.fill(std::numeric_limits<double>::infinity());
+    hi.fill(-std::numeric_limits<double>::infinity());
+  }
+  void add(std::size_t c, double u) {
+    lo[c] = u < lo[c] ? u : lo[c];
+    hi[c] = u > hi[c] ? u : hi[c];
+  }
+  Spread spread() const { return {Vec3(lo.data()), Vec3(hi.data())}; }
+};
+
+// The rotation nearest to `a`, by turning `r` towards it (Mueller, Bender, Chentanez, Macklin
+// 2016). Not to the last digit: any rotation will do, a near one leaves less.
+Mat3 turned_towards(const Mat3& a, Mat3 r) {
+  for (int n = 0; n < 4; ++n) {
+    Vec3 torque = Vec3::Zero();
+    double weight = 0.0;
+    for (int c = 0; c < 3; ++c) {
+      torque += r.col(c).cross(a.col(c));
+      weight += r.col(c).dot(a.col(c));
+    }
+    if (!(std::abs(weight) > 0.0)) break;
+    const Vec3 turn = torque / std::abs(weight);
+    const double angle = turn.norm();
+    if (!(angle > 1e-4)) break;
+    r = Eigen::AngleAxisd(std::min(angle, 1.0), turn / angle) * r;
+  }
+  // Turns add up their rounding.
+  r.col(0).normalize();
+  r.col(1) = (r.col(1) - r.col(0).dot(r.col(1)) * r.col(0)).normalized();
+  r.col(2) = r.col(0).cross(r.col(1));
+  return r;
+}
+
+}  // namespace
+
+Track::Track(std::vector<Index> nodes, const std::vector<Vec3>& x) : nodes_(std::move(nodes)) {
+  for (const Index i : nodes_) {
+    reference_.push_back(x[uz(i)]);
+    reference_box_.add(x[uz(i)]);
+  }
+}
+
+void Track::look(const Moves& moves) {
+  if (nodes_.empty()) return;
+  Extent since, step;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const double* a = moves.from[uz(nodes_[i])].data();
+    const double* b = moves.to[uz(nodes_[i])].data();
+    const double* then = reference_[i].data();
+    for (std::size_t c = 0; c < 3; ++c) {
+      since.add(c, b[c] - then[c]);
+      step.add(c, b[c] - a[c]);
+    }
+  }
+  since_ = since.spread();
+  step_ = step.spread();
+}
+
+void Track::renew(const Moves& moves) {
+  travel_ += since_.shift();
+  drift_ += since_.off();
+  reference_box_ = {};
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    reference_[i] = moves.to[uz(nodes_[i])];
+    reference_box_.add(reference_[i]);
+  }
+  since_ = {};
+}
+
+Box Track::box() const {
+  Box box = end_box();
+  box.lo -= step_.hi.cwiseMax(Vec3::Zero());
+  box.hi -= step_.lo.cwiseMin(Vec3::Zero());
+  return box;
+}
+
+// A way since the mark is that from the present reference, plus those between references, less that
+// at the mark; each is its shift, give or take its off.
+double moved_since(const Track& p, const Track::Mark& p_mark, const Track& q,
+                   const Track::Mark& q_mark) {
+  const Vec3 way =
+      (p.travel_ + p.since_.shift() - p_mark.way) - (q.travel_ + q.since_.shift() - q_mark.way);
+  return 1.000001 * (way.norm() + (p.drift_ + p.since_.off() - p_mark.drift) +
+                     (q.drift_ + q.since_.off() - q_mark.drift));
+}
+
+RigidTrack::RigidTrack(std::vector<Index> nodes, const std::vector<Vec3>& x)
+    : nodes_(std::move(nodes)) {
+  for (const Index i : nodes_) {
+    reference_.push_back(x[uz(i)]);
+    reference_centre_ += x[uz(i)] / static_cast<double>(nodes_.size());
+  }
+}
+
+void RigidTrack::look(const Moves& moves, const Track& whole, bool slow) {
+  Extent box, step;
+  for (const Index i : nodes_) {
+    const double* a = moves.from[uz(i)].data();
+    const double* b = moves.to[uz(i)].data();
+    for (std::size_t c = 0; c < 3; ++c) {
+      box.add(c, b[c]);
+      if (!slow) step.add(c, b[c] - a[c]);
+    }
+  }
+  const Spread ends = box.spread();
+  box_ = {ends.lo, ends.hi};
+  step_ = slow ? whole.step() : step.spread();
+
+  // Of some of the nodes, which is enough for a good rotation.
+  constexpr std::size_t some = 3;
+  Vec3 centre = Vec3::Zero(), reference_centre = Vec3::Zero();
+  for (std::size_t i = 0; i < nodes_.size(); i += some) {
+    centre += moves.to[uz(nodes_[i])];
+    reference_centre += reference_[i];
+  }
+  const double share = 1.0 / static_cast<double>((nodes_.size() + some - 1) / some);
+  centre *= share;
+  reference_centre *= share;
+  Mat3 a = Mat3::Zero();
+  for (std::size_t i = 0; i < nodes_.size(); i += some) {
+    a += (moves.to[uz(nodes_[i])] - centre) * (reference_[i] - reference_centre).transpose();
+  }
+  way_.r = turned_towards(a, way_.r);
+  way_.t = centre - way_.r * reference_centre;
+  double off2 = 0.0;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    const double d2 = (moves.to[uz(nodes_[i])] - way_(reference_[i])).squaredNorm();
+    if (!(d2 <= off2)) off2 = d2;
+  }
+  off_ = std::sqrt(off2);
+}
+
+void RigidTrack::renew(const Moves& moves) {
+  travel_ = whole_way();
+  drift_ += off_;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) reference_[i] = moves.to[uz(nodes_[i])];
+  way_ = {};
+  off_ = 0.0;
+}
+
+RigidTrack::Mark RigidTrack::mark() const {
+  return {whole_way(), drift_ - off_, 0.5 * (box_.lo + box_.hi), 0.5 * (box_.hi - box_.lo).norm()};
+}
+
+// With the rigid motions P and Q from the marks to now, a node of p is at P x_p, one of q at Q x_q,
+// give or take. P keeps distances, so theirs has changed by no more than |Q x_q - P x_q|, which is
+// no more than that at the centre of a ball that holds x_q, plus its radius times the norm of the
+// difference of the rotations: of its three singular values two are the same and one is 0.
+double changed_since(const RigidTrack& p, const RigidTrack::Mark& p_mark, const RigidTrack& q,
+                     const RigidTrack::Mark& q_mark) {
+  const double off = (p.drift_ + p.off_ - p_mark.drift) + (q.drift_ + q.off_ - q_mark.drift);
+  if (&p == &q) return 1.000001 * off;
+  const Rigid p_way = p.whole_way().after(p_mark.way.inverse());
+  const Rigid q_way = q.whole_way().after(q_mark.way.inverse());
+  const double turn = (q_way.r - p_way.r).norm() / std::sqrt(2.0);
+  const auto at = [&](const RigidTrack::Mark& mark) {
+    return (q_way(mark.centre) - p_way(mark.centre)).norm() + turn * mark.radius;
+  };
+  return 1.000001 * (std::min(at(p_mark), at(q_mark)) + off);
+}
+
+}  // namespace sinew
