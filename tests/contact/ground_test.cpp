@@ -32,7 +32,7 @@ struct Ball {
     state.position[0] += h * state.half_velocity[0];
     std::vector<Contact> found;
     find_ground_contacts(model, state.position, 0.0, found);
-    const ContactReport r = respond_to_contacts(model, found, force, h, state);
+    const ContactReport r = respond_to_contacts(model, found, force, h, state, scratch);
     contacts += r.contacts;
     dissipated += r.dissipated;
     state.last_step = h;
@@ -48,6 +48,7 @@ struct Ball {
   static constexpr double g = 10.0;
   Model model;
   State state;
+  ContactScratch scratch;
   Index contacts = 0;
   double dissipated = 0.0;
 };

@@ -36,7 +36,7 @@ struct Masses {
     }
     for (Contact& c : contacts) c.gap = contact_gap(c, state.position);
     state.obstacle_force.assign(1, Vec3::Zero());
-    const ContactReport report = respond_to_contacts(model, contacts, force, h, state);
+    const ContactReport report = respond_to_contacts(model, contacts, force, h, state, scratch);
     state.last_step = h;
     return report;
   }
@@ -54,6 +54,7 @@ struct Masses {
   }
   Model model;
   State state;
+  ContactScratch scratch;
   std::vector<Vec3> force;
 };
 

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/contact/rebound.h"
-
 namespace sinew {
 namespace {
+
+using Impact = ContactScratch::Impact;
+using Arrival = ContactScratch::Arrival;
 
 constexpr int most_sweeps = 50;
 constexpr double small = 1e-3;  // share of the largest impulse below which a change is let be
@@ -16,181 +17,259 @@ constexpr double small = 1e-3;  // share of the largest impulse below which a ch
 constexpr double way_out = 0.2;
 constexpr double speed_out = 0.1;
 
-// A contact and what it has been given so far. "Along" is along the normal.
-struct Impact {
-  const Contact* contact = nullptr;
-  double mass = 0.0;      // effective: 1 / sum_a weight_a^2 / m_a [kg]
-  double velocity = 0.0;  // along, as predicted [m/s]
-  double pull = 0.0;      // along, acceleration [m/s2]
-  double least = 0.0;     // along, velocity to go on with [m/s]
-  bool bounces = false;   // as `after` has it
-  Rebound after;
-  double impulse = 0.0;       // along, so far [N s]
-  Vec3 grip = Vec3::Zero();   // across, so far [N s]
-  Vec3 speed = Vec3::Zero();  // of the collider's surface [m/s]
-};
+// How far a push of the step before is looked for around its place in the order.
+constexpr std::size_t recall_range = 8;
 
-Vec3 relative(const Contact& c, const std::vector<Vec3>& v) {
-  Vec3 sum = Vec3::Zero();
-  for (int a = 0; a < c.count; ++a) {
-    sum += c.weight[static_cast<std::size_t>(a)] * v[uz(c.node[static_cast<std::size_t>(a)])];
-  }
-  return sum;
+// Of the place across the gap [m/s].
+Vec3 relative(const Impact& i, const std::vector<Vec3>& v) {
+  return i.weight[0] * v[i.slot[0]] + i.weight[1] * v[i.slot[1]] + i.weight[2] * v[i.slot[2]] +
+         i.weight[3] * v[i.slot[3]];
 }
 
 // v_a += weight_a / m_a change.
-void push(const Model& model, const Contact& c, const Vec3& change, std::vector<Vec3>& v) {
-  for (int a = 0; a < c.count; ++a) {
-    const auto node = uz(c.node[static_cast<std::size_t>(a)]);
-    v[node] += (c.weight[static_cast<std::size_t>(a)] * model.inverse_mass[node]) * change;
-  }
+void push(const Impact& i, const Vec3& change, std::vector<Vec3>& v) {
+  for (std::size_t a = 0; a < 4; ++a) v[i.slot[a]] += i.share[a] * change;
 }
 
-double effective_mass(const Model& model, const Contact& c) {
-  double compliance = 0.0;
-  for (int a = 0; a < c.count; ++a) {
-    const double w = c.weight[static_cast<std::size_t>(a)];
-    compliance += w * w * model.inverse_mass[uz(c.node[static_cast<std::size_t>(a)])];
-  }
-  return compliance > 0.0 ? 1.0 / compliance : 0.0;
-}
-
-Vec3 acceleration(const Model& model, const Contact& c, const std::vector<Vec3>& force) {
+// Along the normal [m/s2].
+double acceleration(const Model& model, const Contact& c, const std::vector<Vec3>& force) {
   Vec3 sum = Vec3::Zero();
-  for (int a = 0; a < c.count; ++a) {
-    const auto node = uz(c.node[static_cast<std::size_t>(a)]);
-    sum += (c.weight[static_cast<std::size_t>(a)] * model.inverse_mass[node]) * force[node];
+  for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) {
+    const auto node = uz(c.node[a]);
+    sum += (c.weight[a] * model.inverse_mass[node]) * force[node];
   }
-  return sum;
+  return c.normal.dot(sum);
 }
 
-std::vector<Impact> find_impacts(const Model& model, const std::vector<Contact>& contacts,
-                                 const std::vector<Vec3>& force, double h, const State& state) {
-  std::vector<Impact> impacts;
+// The node's place among those that are touched.
+std::uint32_t slot_of(Index node, const State& state, ContactScratch& s) {
+  std::uint32_t& slot = s.slot[uz(node)];
+  if (slot == 0) {
+    slot = static_cast<std::uint32_t>(s.node.size());
+    s.node.push_back(node);
+    s.predicted.push_back(state.half_velocity[uz(node)]);
+  }
+  return slot;
+}
+
+void find_impacts(const Model& model, const std::vector<Contact>& contacts, const State& state,
+                  ContactScratch& s) {
+  s.impacts.clear();
+  s.arrivals.clear();
+  s.node.assign(1, -1);
+  s.predicted.assign(1, Vec3::Zero());
+  s.slot.resize(model.inverse_mass.size(), 0);
   for (const Contact& c : contacts) {
     Impact impact;
-    impact.contact = &c;
-    impact.mass = effective_mass(model, c);
-    if (impact.mass == 0.0) continue;
-    impact.speed = c.way / h;
-    impact.velocity = c.normal.dot(relative(c, state.half_velocity) - impact.speed);
-    impact.pull = c.normal.dot(acceleration(model, c, force));
+    double compliance = 0.0;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) {
+      impact.weight[a] = c.weight[a];
+      impact.share[a] = c.weight[a] * model.inverse_mass[uz(c.node[a])];
+      compliance += impact.weight[a] * impact.share[a];
+    }
+    if (!(compliance > 0.0)) continue;
+    for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a)
+      impact.slot[a] = slot_of(c.node[a], state, s);
+    impact.mass = 1.0 / compliance;
+    impact.normal = c.normal;
+    impact.friction = c.friction;
+    s.impacts.push_back(impact);
+    Arrival arrival;
+    arrival.contact = &c;
+    s.arrivals.push_back(arrival);
+  }
+}
+
+// Where each contact is to go.
+void aim(const Model& model, const std::vector<Vec3>& force, double h, ContactScratch& s) {
+  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
+    Impact& impact = s.impacts[k];
+    Arrival& arrival = s.arrivals[k];
+    const Contact& c = *arrival.contact;
+    if (c.obstacle >= 0) impact.speed = c.way / h;
+    const double velocity = c.normal.dot(relative(impact, s.predicted) - impact.speed);
+    arrival.velocity = velocity;
     if (c.restitution > 0.0 && c.gap < 0.0) {
-      impact.after = rebound(c.gap, impact.velocity, impact.pull, h, c.restitution);
-      impact.bounces = impact.after.velocity > 0.0;
+      arrival.pull = acceleration(model, c, force);
+      arrival.after = rebound(c.gap, velocity, arrival.pull, h, c.restitution);
+      arrival.bounces = arrival.after.velocity > 0.0;
     }
     // Velocities lead positions: the gap at the end of the step is gap + h (v - velocity), and may
     // not be less than 0, or than what is left of the depth at its start.
-    const double start = c.gap - h * impact.velocity;
+    const double start = c.gap - h * velocity;
     const double end =
         start < 0.0 ? std::min(0.0, start + std::min(-way_out * start, h * speed_out)) : 0.0;
-    impact.least = impact.bounces ? impact.after.velocity : (end - start) / h;
-    impacts.push_back(impact);
+    impact.least = arrival.bounces ? arrival.after.velocity : (end - start) / h;
   }
-  return impacts;
 }
 
-// One contact's turn; returns the change of its impulses [N s].
-double exchange(const Model& model, Impact& impact, std::vector<Vec3>& velocity) {
-  const Contact& c = *impact.contact;
-  const Vec3 v = relative(c, velocity) - impact.speed;
-  const double along = c.normal.dot(v);
-  const double impulse = std::max(0.0, impact.impulse + impact.mass * (impact.least - along));
-  const double change = impulse - impact.impulse;
+bool comes_before(const ContactPush& p, const Contact& c) {
+  return p.obstacle != c.obstacle ? p.obstacle < c.obstacle : p.key < c.key;
+}
+
+// The pair is the same but for the second partner: a node that has gone on to the next triangle.
+bool goes_on(const ContactPush& p, const Contact& c) {
+  return p.obstacle == c.obstacle && p.node == c.node[0] && p.key >> 31 == c.key >> 31;
+}
+
+// Begins with what the same pair pushed with in the step before [N], or with what its node did.
+void recall(const std::vector<ContactPush>& before, double kick, ContactScratch& s) {
+  s.velocity = s.predicted;
+  if (before.empty()) return;
+  s.taken.assign(before.size(), 0);
+  const auto begin_with = [&](std::size_t k, std::size_t p) {
+    Impact& impact = s.impacts[k];
+    s.taken[p] = 1;
+    s.arrivals[k].known = true;
+    const Vec3 total = kick * before[p].push;
+    const double along = impact.normal.dot(total);
+    impact.impulse = std::max(0.0, along);
+    // The cone is seen to when its turn comes.
+    if (impact.friction > 0.0) impact.grip = total - along * impact.normal;
+    push(impact, impact.impulse * impact.normal + impact.grip, s.velocity);
+  };
+  std::size_t p = 0;
+  bool all = true;
+  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
+    const Contact& c = *s.arrivals[k].contact;
+    while (p < before.size() && comes_before(before[p], c)) ++p;
+    s.arrivals[k].recalled = p;
+    const bool same =
+        p < before.size() && before[p].key == c.key && before[p].obstacle == c.obstacle;
+    all = all && same;
+    if (same && s.taken[p] == 0) begin_with(k, p);
+  }
+  if (all) return;
+  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
+    if (s.arrivals[k].known) continue;
+    const std::size_t at = s.arrivals[k].recalled;
+    const std::size_t end = std::min(before.size(), at + recall_range);
+    for (std::size_t q = at - std::min(at, recall_range); q < end; ++q) {
+      if (s.taken[q] != 0 || !goes_on(before[q], *s.arrivals[k].contact)) continue;
+      begin_with(k, q);
+      break;
+    }
+  }
+}
+
+// One contact's turn; returns the square of the change of its impulses [N2 s2].
+double exchange(Impact& i, std::vector<Vec3>& velocity) {
+  const Vec3 v = relative(i, velocity) - i.speed;
+  const double along = i.normal.dot(v);
+  const double impulse = std::max(0.0, i.impulse + i.mass * (i.least - along));
+  const double change = impulse - i.impulse;
   if (impulse == 0.0 && change == 0.0) return 0.0;
-  impact.impulse = impulse;
-  Vec3 total = change * c.normal;
-  if (c.friction > 0.0) {
-    Vec3 grip = impact.grip - impact.mass * (v - along * c.normal);
-    const double most = c.friction * impulse;
-    const double size = grip.norm();
-    if (size > most) grip *= most / size;
-    total += grip - impact.grip;
-    impact.grip = grip;
+  i.impulse = impulse;
+  Vec3 total = change * i.normal;
+  if (i.friction > 0.0) {
+    Vec3 grip = i.grip - i.mass * (v - along * i.normal);
+    const double most = i.friction * impulse;
+    const double size2 = grip.squaredNorm();
+    if (size2 > most * most) grip *= most / std::sqrt(size2);
+    total += grip - i.grip;
+    i.grip = grip;
   }
-  push(model, c, total, velocity);
-  return total.norm();
+  push(i, total, velocity);
+  return total.squaredNorm();
 }
 
-// Takes turns until the changes are small against the largest.
-void exchange_all(const Model& model, std::vector<Impact>& impacts, std::vector<Vec3>& velocity) {
-  double largest = 0.0;
-  for (int s = 0; s < most_sweeps; ++s) {
-    double change = 0.0;
-    for (Impact& impact : impacts) change = std::max(change, exchange(model, impact, velocity));
-    largest = std::max(largest, change);
-    if (change <= small * largest) return;
+// Takes turns until the changes are small against the largest impulse. Returns how many.
+int exchange_all(ContactScratch& s) {
+  double largest2 = 0.0;
+  for (int n = 1;; ++n) {
+    double change2 = 0.0;
+    for (Impact& impact : s.impacts) {
+      change2 = std::max(change2, exchange(impact, s.velocity));
+      largest2 = std::max(largest2, impact.impulse * impact.impulse);
+    }
+    if (change2 <= small * small * largest2 || n == most_sweeps) return n;
   }
 }
 
 // The loss of an impact on its own as the flight has it, less what the mean of the velocities makes
 // of it: that does not see at which moment of the step the impact was. [J]
-double moment_correction(const Impact& i, double kick) {
-  if (!i.bounces) return 0.0;
-  const double alone = i.mass * (i.after.velocity - i.velocity);  // impulse
+double moment_correction(const Impact& i, const Arrival& a, double kick) {
+  if (!a.bounces) return 0.0;
+  const double alone = i.mass * (a.after.velocity - a.velocity);  // impulse
   if (!(alone > 0.0)) return 0.0;
-  const double mean = 0.5 * (i.velocity - kick * i.pull + i.after.velocity);
-  return std::min(1.0, i.impulse / alone) * (i.mass * i.after.loss + alone * mean);
+  const double mean = 0.5 * (a.velocity - kick * a.pull + a.after.velocity);
+  return std::min(1.0, i.impulse / alone) * (i.mass * a.after.loss + alone * mean);
 }
 
-std::vector<Index> touched_nodes(const std::vector<Impact>& impacts) {
-  std::vector<Index> nodes;
-  for (const Impact& i : impacts) {
-    nodes.insert(nodes.end(), i.contact->node.begin(), i.contact->node.begin() + i.contact->count);
+// Velocities and positions of the nodes. Impulses work on the mean of the velocities of the
+// half-steps before and after, as in Verlet's own balance: none where a body lies still, or sticks.
+// Returns what the bodies gain [J].
+double move_nodes(const Model& model, const std::vector<Vec3>& force, double kick, double h,
+                  ContactScratch& s, State& state) {
+  double gained = 0.0;
+  s.mean.resize(s.node.size());
+  s.mean[0] = Vec3::Zero();
+  for (std::size_t k = 1; k < s.node.size(); ++k) {
+    const auto i = uz(s.node[k]);
+    const Vec3& v = s.velocity[k];
+    const Vec3 change = v - s.predicted[k];
+    const Vec3 before = s.predicted[k] - (kick * model.inverse_mass[i]) * force[i];
+    s.mean[k] = 0.5 * (before + v);
+    if (model.inverse_mass[i] == 0.0) continue;
+    gained += model.mass[i] * change.dot(s.mean[k]);
+    state.half_velocity[i] = v;
+    state.position[i] += h * change;
   }
-  std::sort(nodes.begin(), nodes.end());
-  nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-  return nodes;
+  return gained;
 }
 
 }  // namespace
 
 ContactReport respond_to_contacts(const Model& model, const std::vector<Contact>& contacts,
-                                  const std::vector<Vec3>& force, double h, State& state) {
+                                  const std::vector<Vec3>& force, double h, State& state,
+                                  ContactScratch& s) {
   ContactReport report;
-  std::vector<Impact> impacts = find_impacts(model, contacts, force, h, state);
-  if (impacts.empty()) return report;
-
-  const std::vector<Index> nodes = touched_nodes(impacts);
-  std::vector<Vec3> predicted;
-  for (const Index i : nodes) predicted.push_back(state.half_velocity[uz(i)]);
-  std::vector<Vec3> slide;  // of each place before
-  for (const Impact& i : impacts) slide.push_back(relative(*i.contact, state.half_velocity));
-
-  exchange_all(model, impacts, state.half_velocity);
-
-  // Impulses work on the mean of the velocities of the half-steps before and after, as in Verlet's
-  // own balance: none where a body lies still, or sticks.
-  const double kick = 0.5 * (state.last_step + h);
-  double gained = 0.0;
-  for (std::size_t k = 0; k < nodes.size(); ++k) {
-    const auto i = uz(nodes[k]);
-    if (model.inverse_mass[i] == 0.0) continue;
-    const Vec3& v = state.half_velocity[i];
-    const Vec3 before = predicted[k] - (kick * model.inverse_mass[i]) * force[i];
-    gained += 0.5 * model.mass[i] * (v - predicted[k]).dot(before + v);
-    state.position[i] += h * (v - predicted[k]);
+  std::vector<ContactPush>& pushes = state.reactions.contacts;
+  find_impacts(model, contacts, state, s);
+  if (s.impacts.empty()) {
+    pushes.clear();
+    return report;
   }
-  for (std::size_t k = 0; k < impacts.size(); ++k) {
-    const Impact& i = impacts[k];
-    const Contact& c = *i.contact;
+  const double kick = 0.5 * (state.last_step + h);
+  aim(model, force, h, s);
+  recall(pushes, kick, s);
+  report.sweeps = exchange_all(s);
+  const double gained = move_nodes(model, force, kick, h, s, state);
+
+  bool bounced = false;
+  pushes.clear();
+  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
+    const Impact& i = s.impacts[k];
+    const Arrival& a = s.arrivals[k];
+    const Contact& c = *a.contact;
     if (i.impulse == 0.0) continue;
     ++report.contacts;
     // What bounces left the surface at its moment, not at the start of the step.
-    if (i.bounces) {
-      const double shift = i.after.gap - (c.gap + h * (i.after.velocity - i.velocity));
-      push(model, c, i.mass * shift * c.normal, state.position);
+    if (a.bounces) {
+      bounced = true;
+      const double shift = a.after.gap - (c.gap + h * (a.after.velocity - a.velocity));
+      for (std::size_t n = 0; n < static_cast<std::size_t>(c.count); ++n)
+        state.position[uz(c.node[n])] += (i.share[n] * i.mass * shift) * c.normal;
+      report.dissipated += moment_correction(i, a, kick);
     }
-    const Vec3 total = i.impulse * c.normal + i.grip;
+    const Vec3 total = i.impulse * i.normal + i.grip;
     report.work_in += total.dot(i.speed);
-    report.dissipated += moment_correction(i, kick);
-    const Vec3 before = slide[k] - kick * acceleration(model, c, force);
-    const Vec3 after = relative(c, state.half_velocity);
-    report.friction -= i.grip.dot(0.5 * (before + after) - i.speed);
-    report.deepest = std::max(report.deepest, -contact_gap(c, state.position));
+    report.friction -= i.grip.dot(relative(i, s.mean) - i.speed);
     if (c.obstacle >= 0) state.obstacle_force[uz(c.obstacle)] -= total / kick;
+    const double along = i.normal.dot(relative(i, s.velocity) - i.speed);
+    report.deepest = std::max(report.deepest, -(c.gap + h * (along - a.velocity)));
+    pushes.push_back({c.key, c.node[0], c.obstacle, total / kick});
+  }
+  if (bounced) {
+    report.deepest = 0.0;
+    for (std::size_t k = 0; k < s.impacts.size(); ++k) {
+      if (s.impacts[k].impulse == 0.0) continue;
+      report.deepest =
+          std::max(report.deepest, -contact_gap(*s.arrivals[k].contact, state.position));
+    }
   }
   report.dissipated += report.work_in - gained;
+  for (std::size_t k = 1; k < s.node.size(); ++k) s.slot[uz(s.node[k])] = 0;
   return report;
 }
 

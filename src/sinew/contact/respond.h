@@ -2,24 +2,65 @@
 // docs/methods/contact.md.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "sinew/contact/contact.h"
+#include "sinew/contact/rebound.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
 
 struct ContactReport {
   Index contacts = 0;       // places that touched
+  int sweeps = 0;           // turns that all contacts took
   double dissipated = 0.0;  // [J] by impact and friction
   double friction = 0.0;    // [J] of that by friction
   double work_in = 0.0;     // [J] by colliders that move
   double deepest = 0.0;     // [m] the deepest place that is left inside
 };
 
+// Scratch of respond_to_contacts(): holds nothing that the next step could not compute again.
+struct ContactScratch {
+  // A contact and its impulses so far. "Along" is along the normal. Slots are into `velocity`;
+  // those that are not used are 0, which is nobody's and has no weight.
+  struct Impact {
+    std::array<std::uint32_t, 4> slot = {};
+    std::array<double, 4> weight = {};  // [-]
+    std::array<double, 4> share = {};   // weight / m, what an impulse changes velocities by [1/kg]
+    Vec3 normal = Vec3::Zero();         // [-]
+    Vec3 speed = Vec3::Zero();          // of the collider's surface [m/s]
+    Vec3 grip = Vec3::Zero();           // across [N s]
+    double impulse = 0.0;               // along [N s]
+    double mass = 0.0;                  // effective: 1 / sum_a weight_a^2 / m_a [kg]
+    double least = 0.0;                 // along, velocity to go on with [m/s]
+    double friction = 0.0;              // [-]
+  };
+  // What is needed before and after the turns only.
+  struct Arrival {
+    const Contact* contact = nullptr;
+    double velocity = 0.0;  // along, as predicted [m/s]
+    double pull = 0.0;      // along, acceleration [m/s2]; of what may bounce
+    bool bounces = false;   // as `after` has it
+    Rebound after;
+    std::size_t recalled = 0;  // where its push of the step before is, or would be
+    bool known = false;        // it is there
+  };
+  std::vector<Contact> contacts;    // of the step, for those who look for them
+  std::vector<Impact> impacts;      // of those that can be pushed
+  std::vector<Arrival> arrivals;    // (impacts)
+  std::vector<Index> node;          // (slots)
+  std::vector<Vec3> velocity;       // [m/s] (slots)
+  std::vector<Vec3> predicted;      // [m/s] (slots)
+  std::vector<Vec3> mean;           // of the velocities before and after the step [m/s] (slots)
+  std::vector<std::uint32_t> slot;  // of a node, 0: not touched (nodes)
+  std::vector<char> taken;          // 1: recalled (pushes of the step before)
+};
+
 // Corrects a step of length h that led into the contacts. `state` holds the predicted positions and
 // half-step velocities and, in last_step, the step before this one; `force` is the force of the
-// step [N] (nodes), `contacts` are those of the predicted positions.
+// step [N] (nodes), `contacts` are those of the predicted positions, sorted by comes_before().
 //
 // Every contact gets the impulse with which its gap does not end below 0, or the one of its rebound
 // (contact/rebound.h), and at most mu times that along the plane, against the sliding. Positions
@@ -27,10 +68,13 @@ struct ContactReport {
 // Berendsen 1977), so that what a contact does to the energy is what its impulse does. Contacts
 // that share nodes are taken in turn, in their order, with their impulses so far (Gauss and
 // Seidel), until what is left is small; those with a gap above 0 take part where the others would
-// close it. The impulses of a contact between bodies add up to zero: momentum is kept to rounding.
+// close it. They begin with what they pushed with in the step before, state.reactions.contacts,
+// which this one leaves there for the next. The impulses of a contact between bodies add up to
+// zero: momentum is kept to rounding.
 //
 // Adds what every collider is pushed with to state.obstacle_force.
 ContactReport respond_to_contacts(const Model& model, const std::vector<Contact>& contacts,
-                                  const std::vector<Vec3>& force, double h, State& state);
+                                  const std::vector<Vec3>& force, double h, State& state,
+                                  ContactScratch& scratch);
 
 }  // namespace sinew

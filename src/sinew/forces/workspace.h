@@ -12,6 +12,7 @@ namespace sinew {
 
 class PackedForces;
 class ContactFinder;
+struct ContactScratch;
 
 struct Workspace {
   explicit Workspace(const Model& model);
@@ -21,6 +22,7 @@ struct Workspace {
 
   // Of contacts, made by the stepper that first looks for them (contact/find.h).
   std::shared_ptr<ContactFinder> contacts;
+  std::shared_ptr<ContactScratch> answer;  // of explicit steps (contact/respond.h)
   std::vector<Vec3> before;  // positions before the move, where contacts are looked for [m] (nodes)
 
   std::vector<Vec3> spring_force;     // on end 0 of each spring [N] (springs)

@@ -15,15 +15,16 @@ struct EnergyAccount {
   double work_in = 0.0;     // by moving pins and loads
 };
 
-// What the ground and the limits push with at the end of the last implicit step, where the next one
-// starts from; empty before the first, and with Verlet (solver/constraints.h).
 struct ContactPush {
   std::uint64_t key = 0;     // of the contact (contact/contact.h)
   Index node = -1;           // the first of its nodes
-  Index obstacle = -1;       // -1: between bodies
-  Vec3 push = Vec3::Zero();  // on the place [N]
+  Index obstacle = -1;       // as Contact::obstacle
+  Vec3 push = Vec3::Zero();  // on the place [N]: at the end of an implicit step, mean over Verlet's
 };
 
+// What contacts, the ground and the limits push with at the end of the last step, where the next
+// one starts from; empty before the first. Verlet's steps know only contacts, the ground among them
+// (solver/constraints.h, contact/respond.h).
 struct Reactions {
   std::vector<Vec3> ground;      // of the ground on each node [N] (nodes of bodies)
   std::vector<double> tension;   // of each limited spring [N] (as Model::limited), < 0: it pushes

@@ -105,7 +105,10 @@ void follow_positions(const Model& model, const Workspace& workspace,
 // Contacts of the move, and the answer to them.
 void respond(const Model& model, Workspace& workspace, double h, State& state,
              VerletReport& report) {
-  std::vector<Contact> contacts;
+  if (!model.ground && !workspace.contacts) return;
+  if (!workspace.answer) workspace.answer = std::make_shared<ContactScratch>();
+  std::vector<Contact>& contacts = workspace.answer->contacts;
+  contacts.clear();
   state.obstacle_force.assign(model.obstacles.size(), Vec3::Zero());
   // Those that nearly touch take part: what the others push them into counts at once.
   const double reach = workspace.contacts ? workspace.contacts->explicit_reach() : 0.0;
@@ -114,7 +117,7 @@ void respond(const Model& model, Workspace& workspace, double h, State& state,
     workspace.contacts->find(workspace.before, state.position, state.time, state.time + h, reach,
                              contacts);
   }
-  report.contact = respond_to_contacts(model, contacts, workspace.force, h, state);
+  report.contact = respond_to_contacts(model, contacts, workspace.force, h, state, *workspace.answer);
   state.energy.dissipated += report.contact.dissipated;
   state.energy.work_in += report.contact.work_in;
 }
