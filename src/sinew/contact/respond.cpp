@@ -10,7 +10,7 @@ using Impact = ContactScratch::Impact;
 using Arrival = ContactScratch::Arrival;
 
 constexpr int most_sweeps = 50;
-constexpr double small = 1e-3;  // share of the largest impulse below which a change is let be
+constexpr double small = 5e-4;  // share of the largest impulse below which a change is let be
 
 // What is inside at the start of a step is led out by this share of its depth in the step, and no
 // faster than this [m/s]: overlaps at the start of a run do not burst.
@@ -21,14 +21,18 @@ constexpr double speed_out = 0.1;
 constexpr std::size_t recall_range = 8;
 
 // Of the place across the gap [m/s].
-Vec3 relative(const Impact& i, const std::vector<Vec3>& v) {
-  return i.weight[0] * v[i.slot[0]] + i.weight[1] * v[i.slot[1]] + i.weight[2] * v[i.slot[2]] +
-         i.weight[3] * v[i.slot[3]];
+inline Vec3 relative(const Impact& i, const std::vector<Vec3>& v) {
+  Vec3 sum = i.weight[0] * v[i.slot[0]];
+  if (i.count == 1) return sum;
+  for (std::size_t a = 1; a < 4; ++a) sum += i.weight[a] * v[i.slot[a]];
+  return sum;
 }
 
 // v_a += weight_a / m_a change.
-void push(const Impact& i, const Vec3& change, std::vector<Vec3>& v) {
-  for (std::size_t a = 0; a < 4; ++a) v[i.slot[a]] += i.share[a] * change;
+inline void push(const Impact& i, const Vec3& change, std::vector<Vec3>& v) {
+  v[i.slot[0]] += i.share[0] * change;
+  if (i.count == 1) return;
+  for (std::size_t a = 1; a < 4; ++a) v[i.slot[a]] += i.share[a] * change;
 }
 
 // Along the normal [m/s2].
@@ -52,55 +56,67 @@ std::uint32_t slot_of(Index node, const State& state, ContactScratch& s) {
   return slot;
 }
 
-void find_impacts(const Model& model, const std::vector<Contact>& contacts, const State& state,
-                  ContactScratch& s) {
-  s.impacts.clear();
-  s.arrivals.clear();
+// Where a contact is to go: the velocity along the normal that it should end with.
+void aim(const Model& model, const std::vector<Vec3>& force, double h, const Vec3& velocity,
+         Impact& impact, Arrival& arrival) {
+  const Contact& c = *arrival.contact;
+  arrival.bounces = arrival.known = false;
+  impact.speed = Vec3::Zero();
+  if (c.obstacle >= 0) impact.speed = c.way / h;
+  arrival.velocity = c.normal.dot(velocity - impact.speed);
+  if (c.restitution > 0.0 && c.gap < 0.0) {
+    arrival.pull = acceleration(model, c, force);
+    arrival.after = rebound(c.gap, arrival.velocity, arrival.pull, h, c.restitution);
+    arrival.bounces = arrival.after.velocity > 0.0;
+  }
+  // Velocities lead positions: the gap at the end of the step is gap + h (v - velocity), and may
+  // not be less than 0, or than what is left of the depth at its start.
+  const double start = c.gap - h * arrival.velocity;
+  const double end =
+      start < 0.0 ? std::min(0.0, start + std::min(-way_out * start, h * speed_out)) : 0.0;
+  impact.least = arrival.bounces ? arrival.after.velocity : (end - start) / h;
+}
+
+// Fills impacts, arrivals and the slots of their nodes.
+void find_impacts(const Model& model, const std::vector<Contact>& contacts,
+                  const std::vector<Vec3>& force, double h, const State& state, ContactScratch& s) {
   s.node.assign(1, -1);
   s.predicted.assign(1, Vec3::Zero());
   s.slot.resize(model.inverse_mass.size(), 0);
+  s.impacts.resize(contacts.size());
+  s.arrivals.resize(contacts.size());
+  std::size_t n = 0;
   for (const Contact& c : contacts) {
-    Impact impact;
+    Impact& impact = s.impacts[n];
+    const auto count = static_cast<std::size_t>(c.count);
     double compliance = 0.0;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) {
+    for (std::size_t a = 0; a < count; ++a) {
       impact.weight[a] = c.weight[a];
       impact.share[a] = c.weight[a] * model.inverse_mass[uz(c.node[a])];
       compliance += impact.weight[a] * impact.share[a];
     }
     if (!(compliance > 0.0)) continue;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a)
+    Vec3 velocity = Vec3::Zero();
+    for (std::size_t a = 0; a < count; ++a) {
       impact.slot[a] = slot_of(c.node[a], state, s);
+      velocity += c.weight[a] * s.predicted[impact.slot[a]];
+    }
+    for (std::size_t a = count; a < 4; ++a) {
+      impact.weight[a] = impact.share[a] = 0.0;
+      impact.slot[a] = 0;
+    }
+    impact.count = c.count;
     impact.mass = 1.0 / compliance;
     impact.normal = c.normal;
     impact.friction = c.friction;
-    s.impacts.push_back(impact);
-    Arrival arrival;
-    arrival.contact = &c;
-    s.arrivals.push_back(arrival);
+    impact.impulse = 0.0;
+    impact.grip = Vec3::Zero();
+    s.arrivals[n].contact = &c;
+    aim(model, force, h, velocity, impact, s.arrivals[n]);
+    ++n;
   }
-}
-
-// Where each contact is to go.
-void aim(const Model& model, const std::vector<Vec3>& force, double h, ContactScratch& s) {
-  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
-    Impact& impact = s.impacts[k];
-    Arrival& arrival = s.arrivals[k];
-    const Contact& c = *arrival.contact;
-    if (c.obstacle >= 0) impact.speed = c.way / h;
-    const double velocity = c.normal.dot(relative(impact, s.predicted) - impact.speed);
-    arrival.velocity = velocity;
-    if (c.restitution > 0.0 && c.gap < 0.0) {
-      arrival.pull = acceleration(model, c, force);
-      arrival.after = rebound(c.gap, velocity, arrival.pull, h, c.restitution);
-      arrival.bounces = arrival.after.velocity > 0.0;
-    }
-    // Velocities lead positions: the gap at the end of the step is gap + h (v - velocity), and may
-    // not be less than 0, or than what is left of the depth at its start.
-    const double start = c.gap - h * velocity;
-    const double end =
-        start < 0.0 ? std::min(0.0, start + std::min(-way_out * start, h * speed_out)) : 0.0;
-    impact.least = arrival.bounces ? arrival.after.velocity : (end - start) / h;
-  }
+  s.impacts.resize(n);
+  s.arrivals.resize(n);
 }
 
 bool comes_before(const ContactPush& p, const Contact& c) {
@@ -153,7 +169,7 @@ void recall(const std::vector<ContactPush>& before, double kick, ContactScratch&
 }
 
 // One contact's turn; returns the square of the change of its impulses [N2 s2].
-double exchange(Impact& i, std::vector<Vec3>& velocity) {
+inline double exchange(Impact& i, std::vector<Vec3>& velocity) {
   const Vec3 v = relative(i, velocity) - i.speed;
   const double along = i.normal.dot(v);
   const double impulse = std::max(0.0, i.impulse + i.mass * (i.least - along));
@@ -225,13 +241,12 @@ ContactReport respond_to_contacts(const Model& model, const std::vector<Contact>
                                   ContactScratch& s) {
   ContactReport report;
   std::vector<ContactPush>& pushes = state.reactions.contacts;
-  find_impacts(model, contacts, state, s);
+  find_impacts(model, contacts, force, h, state, s);
   if (s.impacts.empty()) {
     pushes.clear();
     return report;
   }
   const double kick = 0.5 * (state.last_step + h);
-  aim(model, force, h, s);
   recall(pushes, kick, s);
   report.sweeps = exchange_all(s);
   const double gained = move_nodes(model, force, kick, h, s, state);

@@ -36,6 +36,7 @@ struct ContactScratch {
     double mass = 0.0;                  // effective: 1 / sum_a weight_a^2 / m_a [kg]
     double least = 0.0;                 // along, velocity to go on with [m/s]
     double friction = 0.0;              // [-]
+    int count = 0;                      // of nodes
   };
   // What is needed before and after the turns only.
   struct Arrival {

@@ -117,7 +117,8 @@ void respond(const Model& model, Workspace& workspace, double h, State& state,
     workspace.contacts->find(workspace.before, state.position, state.time, state.time + h, reach,
                              contacts);
   }
-  report.contact = respond_to_contacts(model, contacts, workspace.force, h, state, *workspace.answer);
+  report.contact =
+      respond_to_contacts(model, contacts, workspace.force, h, state, *workspace.answer);
   state.energy.dissipated += report.contact.dissipated;
   state.energy.work_in += report.contact.work_in;
 }
