@@ -150,12 +150,23 @@ unsigned beyond(const Box& box, const Vec3& x0, const Vec3& x1) {
   return bits;
 }
 
+// Whether the triangle is so small at rest that its corners are enough to keep a ball, or the rod of
+// a capsule, of that radius [m] out: between them it sags into them by a hundredth of the radius.
+bool is_small(const Model& model, const Triangle& t, double radius) {
+  const auto& x = model.rest_position;
+  const auto is_short = [&](std::size_t a, std::size_t b) {
+    return 4.0 * (x[uz(t[a])] - x[uz(t[b])]).squaredNorm() <= radius * radius;
+  };
+  return is_short(0, 1) && is_short(1, 2) && is_short(2, 0);
+}
+
 void add_triangles(const Model& model, const Moving& m, std::size_t body,
                    const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
                    std::vector<Contact>& out) {
   const std::vector<Rod> rods =
       rods_of(*m.obstacle, m.before, m.after, model.skin.longest_edge[body]);
   if (rods.empty()) return;
+  const bool round = m.obstacle->shape != ObstacleShape::box;
   const Range nodes = model.bodies[body].nodes;
   std::vector<unsigned char> outside(uz(nodes.size()));
   const Range own = model.skin.body_nodes[body];
@@ -172,7 +183,9 @@ void add_triangles(const Model& model, const Moving& m, std::size_t body,
       shared &= outside[uz(node - nodes.begin)];
       free += model.inverse_mass[uz(node)];
     }
-    if (shared == 0 && free > 0.0) near.push_back(t);
+    if (shared != 0 || free == 0.0) continue;
+    if (round && is_small(model, model.skin.triangles[uz(t)], m.obstacle->radius)) continue;
+    near.push_back(t);
   }
   if (near.empty()) return;
   for (std::size_t r = 0; r < rods.size(); ++r) {
