@@ -84,6 +84,9 @@ int supervise(const Arguments& a, const std::string& title, fs::path out, const 
     if (!a.quiet && !a.json) fmt::print("stepper = \"auto\" takes {} ({})\n", stepper, reason);
     std::fflush(stdout);
   };
+  options.on_warning = [&](const std::string& text) {
+    if (!a.quiet) fmt::print(stderr, "warning: {}\n", text);
+  };
   const RunResult result = work(options);
   bar.clear();
   if (a.json) {

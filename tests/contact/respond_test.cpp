@@ -164,6 +164,69 @@ TEST(Respond, PinnedNodesStay) {
   EXPECT_EQ(m.step({node_on_triangle(0.5, 0.0)}).contacts, 0);
 }
 
+// A mass of 2 kg that lies on a plane, pulled aside by half its weight.
+Masses lying_mass() {
+  Masses m({Vec3(0, 0, 0)}, {Vec3(0, 0, 0)}, {2.0});
+  m.force[0] = Vec3(10.0, -20.0, 0.0);
+  return m;
+}
+
+Contact mass_on_plane(double friction, std::uint64_t key) {
+  Contact c;
+  c.node[0] = 0;
+  c.weight[0] = 1.0;
+  c.count = 1;
+  c.friction = friction;
+  c.key = key;
+  return c;
+}
+
+TEST(Respond, BeginsWithWhatItPushedWithInTheStepBefore) {
+  Masses m = lying_mass();
+  EXPECT_GT(m.step({mass_on_plane(0.6, 3)}).sweeps, 1);
+  for (int i = 0; i < 3; ++i) {
+    ASSERT_EQ(m.state.reactions.contacts.size(), 1U);
+    const ContactPush& p = m.state.reactions.contacts[0];
+    EXPECT_EQ(p.key, 3U);
+    EXPECT_LT((p.push - Vec3(-10.0, 20.0, 0.0)).norm(), 1e-9);  // also after a first half-step
+    EXPECT_EQ(m.step({mass_on_plane(0.6, 3)}).sweeps, 1);
+    EXPECT_LT(m.state.half_velocity[0].norm(), 1e-12);
+  }
+  EXPECT_EQ(m.step({}).contacts, 0);
+  EXPECT_TRUE(m.state.reactions.contacts.empty());
+}
+
+TEST(Respond, ANodeThatGoesOnToTheNextTriangleKeepsItsPush) {
+  Masses m = lying_mass();
+  const std::uint64_t slot = std::uint64_t{5} << 31;
+  m.step({mass_on_plane(0.6, slot | 7)});
+  EXPECT_EQ(m.step({mass_on_plane(0.6, slot | 9)}).sweeps, 1);
+  EXPECT_EQ(m.state.reactions.contacts.at(0).key, slot | 9);
+  Contact other = mass_on_plane(0.6, slot | 9);
+  other.obstacle = 0;  // something else
+  EXPECT_GT(m.step({other}).sweeps, 1);
+}
+
+TEST(Respond, FrictionsConeHoldsWhateverItBeginsWith) {
+  for (const Vec3& stale :
+       {Vec3(-500.0, 20.0, 0.0), Vec3(0.0, -30.0, 90.0), Vec3(3.0, 900.0, 2.0)}) {
+    Masses m = lying_mass();
+    m.state.last_step = h;
+    ContactPush p;
+    p.key = 3;
+    p.node[0] = 0;
+    p.weight[0] = 1.0;
+    p.count = 1;
+    p.push = stale;
+    m.state.reactions.contacts = {p};
+    m.step({mass_on_plane(0.3, 3)});
+    const Vec3 impulse = 2.0 * m.state.half_velocity[0] - h * m.force[0];
+    EXPECT_NEAR(impulse.y(), 20.0 * h, 1e-12);
+    EXPECT_NEAR(impulse.x(), -0.3 * 20.0 * h, 1e-12);
+    EXPECT_NEAR(impulse.z(), 0.0, 1e-12);
+  }
+}
+
 TEST(Respond, RandomTanglesOfContactsKeepMomentumAndNeverAddEnergy) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);

@@ -1,12 +1,16 @@
 // Bodies that touch, whole runs: what docs/methods/contact.md promises.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <string>
 
+#include "sinew/base/parallel.h"
 #include "sinew/contact/overlaps.h"
 #include "sinew/forces/terms.h"
+#include "sinew/run/checkpoint.h"
 #include "sinew/run/stepping.h"
 #include "sinew/scene/build.h"
 
@@ -173,6 +177,45 @@ TEST(Contact, ImplicitAndExplicitStepsComeToTheSameRest) {
   }
   EXPECT_LT(height[0], 0.03 - 1e-4);
   EXPECT_NEAR(height[0], height[1], 0.02 * (0.03 - height[1]));
+}
+
+// Contacts begin with what they pushed with in the step before: that is in the checkpoint too.
+TEST(Contact, ARunThatIsCutGoesOnToTheSameBits) {
+  const Scene scene =
+      scene_of("duration = 0.1\n[ground]\n[contact]\n" + cube("a", "position = [0, 0.0101, 0]") +
+               cube("b", "position = [0.003, 0.0302, 0]\nrotation = [0, 20, 0]") +
+               "[obstacle.wall]\nshape = \"box\"\ncenter = [0.023, 0.03, 0]\n"
+               "size = [0.02, 0.03, 0.04]\n");
+  Trial whole(scene);
+  std::vector<std::uint64_t> hashes;
+  for (const int threads : {1, 2}) {
+    const ThreadLimit limit(threads);
+    Trial cut(scene);
+    while (cut.run.frame < 2) cut.stepping.advance_frame(cut.run, nullptr);
+    EXPECT_GT(cut.run.state.reactions.contacts.size(), 10U);
+    const auto file = std::filesystem::temp_directory_path() /
+                      ("sinew-contact-" + std::to_string(::getpid()) + ".bin");
+    write_checkpoint(file, cut.model, cut.run);
+    Trial rest(scene);
+    rest.run = read_checkpoint(file, rest.model);
+    std::filesystem::remove(file);
+    rest.to_the_end();
+    hashes.push_back(rest.run.state.hash());
+  }
+  whole.to_the_end();
+  EXPECT_EQ(hashes[0], whole.run.state.hash());
+  EXPECT_EQ(hashes[1], whole.run.state.hash());
+}
+
+// What rests has no kinetic energy: the velocity of a whole step knows the contacts' forces.
+TEST(Contact, WhatLiesStillHasNoKineticEnergy) {
+  Trial r(scene_of("duration = 1\n[ground]\n[contact]\n" +
+                   cube("a", "position = [0, 0.01, 0]\ndamping_ratio = 0.5") +
+                   cube("b", "position = [0, 0.03, 0]\ndamping_ratio = 0.5")));
+  r.to_the_end();
+  const Energies e = measure_energies(r.model, r.run.state, r.stepping.workspace());
+  EXPECT_LT(e.kinetic, 1e-3 * e.elastic);
+  EXPECT_NEAR(e.total(), 0.0, 0.02 * std::abs(e.gravity));
 }
 
 }  // namespace

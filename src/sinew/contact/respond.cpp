@@ -125,7 +125,7 @@ bool comes_before(const ContactPush& p, const Contact& c) {
 
 // The pair is the same but for the second partner: a node that has gone on to the next triangle.
 bool goes_on(const ContactPush& p, const Contact& c) {
-  return p.obstacle == c.obstacle && p.node == c.node[0] && p.key >> 31 == c.key >> 31;
+  return p.obstacle == c.obstacle && p.node[0] == c.node[0] && p.key >> 31 == c.key >> 31;
 }
 
 // Begins with what the same pair pushed with in the step before [N], or with what its node did.
@@ -273,7 +273,7 @@ ContactReport respond_to_contacts(const Model& model, const std::vector<Contact>
     if (c.obstacle >= 0) state.obstacle_force[uz(c.obstacle)] -= total / kick;
     const double along = i.normal.dot(relative(i, s.velocity) - i.speed);
     report.deepest = std::max(report.deepest, -(c.gap + h * (along - a.velocity)));
-    pushes.push_back({c.key, c.node[0], c.obstacle, total / kick});
+    pushes.push_back({c.key, c.node, c.weight, c.count, c.obstacle, total / kick});
   }
   if (bounced) {
     report.deepest = 0.0;

@@ -82,6 +82,14 @@ std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
     const auto k = uz(i);
     v[k] += (0.5 * state.last_step * model.inverse_mass[k]) * workspace.force[k];
   });
+  if (state.last_step == 0.0) return v;
+  // What rests on something is held by it.
+  for (const ContactPush& p : state.reactions.contacts) {
+    for (std::size_t a = 0; a < static_cast<std::size_t>(p.count); ++a) {
+      const auto k = uz(p.node[a]);
+      v[k] += (0.5 * state.last_step * model.inverse_mass[k] * p.weight[a]) * p.push;
+    }
+  }
   return v;
 }
 

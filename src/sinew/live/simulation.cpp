@@ -334,7 +334,7 @@ Status Simulation::status() {
   for (const ProbeReading& p : read_probes(*model_, run_.state.position)) {
     s.probes.push_back(p.displacement);
   }
-  for (const ObstacleReading& o : read_obstacles(*model_, run_.state)) {
+  for (const ObstacleReading& o : read_obstacles(*model_, run_.state, stepping_->workspace())) {
     if (s.obstacles.size() == scene_.obstacles.size()) break;  // the ball comes last
     const Obstacle& obstacle = model_->obstacles[s.obstacles.size()];
     const Mat3 turn = obstacle_pose(obstacle, run_.state.time).turn;

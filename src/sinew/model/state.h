@@ -1,6 +1,7 @@
 // What changes during a run. With the Model's hash it is all that a checkpoint holds.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -15,12 +16,16 @@ struct EnergyAccount {
   double work_in = 0.0;     // by moving pins and loads
 };
 
+// What a contact pushes with (contact/contact.h says more of what stands here).
 struct ContactPush {
-  std::uint64_t key = 0;     // of the contact (contact/contact.h)
-  Index node = -1;           // the first of its nodes
-  Index obstacle = -1;       // as Contact::obstacle
+  std::uint64_t key = 0;  // of the contact
+  std::array<Index, 4> node = {-1, -1, -1, -1};
+  std::array<double, 4> weight = {};  // of the nodes [-]
+  Index count = 0;                    // nodes used
+  Index obstacle = -1;                // as Contact::obstacle
   Vec3 push = Vec3::Zero();  // on the place [N]: at the end of an implicit step, mean over Verlet's
 };
+static_assert(sizeof(ContactPush) == 88, "no gaps: checkpoints hold its bytes");
 
 // What contacts, the ground and the limits push with at the end of the last step, where the next
 // one starts from; empty before the first. Verlet's steps know only contacts, the ground among them

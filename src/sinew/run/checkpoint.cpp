@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view magic = "SINEWCP5";
+constexpr std::string_view magic = "SINEWCP6";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>
@@ -50,6 +50,7 @@ void visit(Archive& a, Run& r) {
   a.value(r.righting_steps);
   a.value(r.contacts);
   a.value(r.deepest);
+  a.value(r.depth);
   a.value(r.friction_work);
   a.value(r.newton_steps);
   a.value(r.products);

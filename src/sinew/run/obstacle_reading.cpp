@@ -15,7 +15,8 @@ double longest_edge(const Model& model) {
 
 }  // namespace
 
-std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state) {
+std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
+                                            Workspace& workspace) {
   std::vector<ObstacleReading> readings = read_obstacles(model, state.position, state.time);
   const bool hard = std::any_of(model.obstacles.begin(), model.obstacles.end(),
                                 [](const Obstacle& o) { return o.hard(); });
@@ -24,9 +25,9 @@ std::vector<ObstacleReading> read_obstacles(const Model& model, const State& sta
     if (model.obstacles[o].hard()) readings[o].force = state.obstacle_force[o];
 
   std::vector<Contact> contacts;
-  ContactFinder finder(model);
-  finder.find(state.position, state.position, state.time, state.time, 1e-3 * longest_edge(model),
-              contacts);
+  if (!workspace.contacts) workspace.contacts = std::make_shared<ContactFinder>(model);
+  workspace.contacts->find(state.position, state.position, state.time, state.time,
+                           1e-3 * longest_edge(model), contacts);
   for (const Contact& c : contacts) {
     if (c.obstacle < 0) continue;
     ObstacleReading& reading = readings[uz(c.obstacle)];

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "sinew/forces/obstacles.h"
+#include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
@@ -11,6 +12,7 @@ namespace sinew {
 // By obstacle. Soft: as the positions are (forces/obstacles.h). Hard: the force is the mean over
 // the last step, depth that of the deepest place inside, and places count as touching that are
 // inside or nearer than a thousandth of the longest edge of the bodies' surfaces.
-std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state);
+std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
+                                            Workspace& workspace);
 
 }  // namespace sinew

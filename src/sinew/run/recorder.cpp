@@ -128,7 +128,7 @@ void Recorder::record(RunState& run, Workspace& workspace) {
     add(p.position);
     add(p.displacement);
   }
-  for (const ObstacleReading& o : read_obstacles(model_, run.state)) {
+  for (const ObstacleReading& o : read_obstacles(model_, run.state, workspace)) {
     add(o.center);
     add(o.force);
     row += fmt::format(",{},{}", o.travel.norm(), against_travel(o));

@@ -196,6 +196,12 @@ RunResult build_and_run(const Scene& scene, const RunOptions& options, bool resu
       warnings.push_back(fmt::format("body {}: {}", body.name, w));
     }
   }
+  if (!resume) {
+    for (const std::string& w : report.warnings) {
+      warnings.push_back(w);
+      if (options.on_warning) options.on_warning(w);
+    }
+  }
   RunState start;
   if (resume) {
     start = read_checkpoint(options.out / checkpoint_name, model);

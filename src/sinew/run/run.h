@@ -30,6 +30,8 @@ struct RunOptions {
   std::function<void(const Progress&)> on_progress;  // called after every frame
   // stepper = "auto": called before the first step with RunState::stepper and its reason.
   std::function<void(const std::string&, const std::string&)> on_stepper;
+  // Called before the first step with what is wrong with the start; it is in the summary as well.
+  std::function<void(const std::string&)> on_warning;
 };
 
 enum class RunStatus { finished, interrupted, diverged };

@@ -269,6 +269,7 @@ void Stepping::implicit_steps(RunState& run, const std::atomic<bool>* stop) {
     run.residual = std::max(run.residual, report.residual);
     run.step_cuts += report.cuts;
     run.contacts = report.contacts;
+    run.depth = report.deepest;
     run.deepest = std::max(run.deepest, report.deepest);
     run.friction_work += report.friction;
     run.unmet_limits += report.within ? 0 : 1;
@@ -293,6 +294,7 @@ void Stepping::verlet_steps(RunState& run, const std::atomic<bool>* stop) {
     --run.steps_to_watch;
     if (model_.has_volume && run.steps_left > 0) watch_guard(run);
     run.contacts = report.contact.contacts;
+    run.depth = report.contact.deepest;
     run.deepest = std::max(run.deepest, report.contact.deepest);
     run.friction_work += report.contact.friction;
     run.limit_sweeps += report.limit_sweeps;

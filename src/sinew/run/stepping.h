@@ -51,6 +51,7 @@ struct RunState {
   std::int64_t righting_steps = 0;    // steps in which a tangled body was led back
   std::int64_t contacts = 0;          // places that touched in the last step
   double deepest = 0.0;               // a place was left inside what it touched, of all steps [m]
+  double depth = 0.0;                 // the same of the last step [m]
   double friction_work = 0.0;         // of contacts, over the run [J]
   std::int64_t newton_steps = 0;      // of rest states and implicit steps, in all
   std::int64_t products = 0;          // Hessian products it took, in all

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/base/hash.h"
+#include "sinew/contact/overlaps.h"
 #include "sinew/forces/limits.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/volume.h"
@@ -128,6 +129,8 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.peak_compress = run.peak_compress;
   s.contacts = run.contacts;
   s.deepest_penetration = run.deepest;
+  s.penetration = run.depth;
+  for (const Overlap& o : find_overlaps(model, x)) s.overlap = std::max(s.overlap, o.depth);
   s.friction_work = run.friction_work;
   s.limit_sweeps = run.limit_sweeps;
   s.unmet_limits = run.unmet_limits;
@@ -142,7 +145,7 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.residual = run.residual;
   s.largest_cell_change = largest_cell_change(model, x);
   s.probes = read_probes(model, x);
-  s.obstacles = read_obstacles(model, run.state);
+  s.obstacles = read_obstacles(model, run.state, workspace);
   return s;
 }
 
@@ -220,6 +223,8 @@ nlohmann::ordered_json to_json(const Summary& s) {
           {"peak_compress", s.peak_compress},
           {"contacts", s.contacts},
           {"deepest_penetration", s.deepest_penetration},
+          {"penetration", s.penetration},
+          {"overlap", s.overlap},
           {"friction_work", s.friction_work},
           {"limits",
            {{"sweeps", s.limit_sweeps},

@@ -64,7 +64,10 @@ struct Summary {
   double peak_stretch = 0.0, peak_compress = 0.0;  // the largest of all frames
   std::int64_t contacts = 0;                       // places that touch at the end
   double deepest_penetration = 0.0;                // of all steps [m]
-  double friction_work = 0.0;                      // turned to heat by contacts [J]
+  double penetration = 0.0;                        // of the last one [m]
+  double overlap =
+      0.0;  // depth of the deepest node of a body in the tets of another, at the end [m]
+  double friction_work = 0.0;  // turned to heat by contacts [J]
   std::int64_t limit_sweeps = 0, unmet_limits = 0, righting_steps = 0;
   double limit_violation = 0.0;  // at the end, as a share of the rest length
   std::int64_t step_reductions = 0, step_increases = 0, step_cuts = 0;  // see RunState

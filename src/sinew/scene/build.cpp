@@ -9,6 +9,7 @@
 #include <set>
 
 #include "sinew/contact/colliders.h"
+#include "sinew/contact/overlaps.h"
 #include "sinew/contact/touch_surface.h"
 #include "sinew/forces/assemble.h"
 #include "sinew/forces/laws.h"
@@ -17,6 +18,7 @@
 #include "sinew/identify/calibrate.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/surface.h"
+#include "sinew/model/state.h"
 #include "sinew/scene/connect.h"
 #include "sinew/scene/place.h"
 #include "sinew/scene/rigid_mesh.h"
@@ -280,6 +282,42 @@ class Parts {
   std::vector<const ScenePin*> holder_;  // (nodes)
 };
 
+bool can_move(const Model& model, const Body& body) {
+  for (Index i = body.nodes.begin; i < body.nodes.end; ++i)
+    if (model.inverse_mass[uz(i)] > 0.0) return true;
+  return false;
+}
+
+// What is inside what as the run starts: a pair is said once, by the side that is deeper.
+std::vector<std::string> overlap_warnings(const Model& model) {
+  constexpr std::size_t most = 5;  // pairs that are named
+  constexpr double small = 1e-3;   // of the other body's mean tet: bodies that lie flush
+  const std::vector<Vec3> x = initial_state(model).position;
+  std::map<std::pair<Index, Index>, Overlap> pairs;
+  for (const Overlap& o : find_overlaps(model, x)) {
+    const Body &a = model.bodies[uz(o.a)], &b = model.bodies[uz(o.b)];
+    const double size =
+        std::cbrt(b.rest_volume / std::max(1.0, static_cast<double>(b.tets.size())));
+    if (o.depth < small * size || (!can_move(model, a) && !can_move(model, b))) continue;
+    Overlap& worst = pairs[std::minmax(o.a, o.b)];
+    if (o.depth > worst.depth) worst = o;
+  }
+  std::vector<std::string> warnings;
+  for (const auto& [pair, o] : pairs) {
+    if (warnings.size() == most) {
+      warnings.push_back(fmt::format("{} more pairs of bodies overlap", pairs.size() - most));
+      break;
+    }
+    warnings.push_back(fmt::format(
+        "body {} is inside body {} at the start: {} of its nodes, up to {:.3g} m deep ({}); move "
+        "them apart by 'position', or they are pushed out slowly, or not at all where they are "
+        "deeper than a third of a tet",
+        model.bodies[uz(o.a)].name, model.bodies[uz(o.b)].name, o.nodes, o.depth,
+        model.node_name(o.deepest)));
+  }
+  return warnings;
+}
+
 }  // namespace
 
 Model build_model(const Scene& scene, BuildReport* report) {
@@ -296,6 +334,8 @@ Model build_model(const Scene& scene, BuildReport* report) {
   Parts(scene, bodies, model).add();
   build_touch_surface(model);
   finish(model);
+  if (report != nullptr && model.touch && model.touch->bodies)
+    report->warnings = overlap_warnings(model);
   return model;
 }
 

@@ -19,6 +19,7 @@ struct BuildReport {
     std::vector<std::string> warnings;  // what was repaired; sizes that look wrong
   };
   std::vector<Body> bodies;
+  std::vector<std::string> warnings;  // bodies that are inside each other at the start
 };
 
 // Throws Error(input), at the place in the scene file where there is one, for a mesh that is

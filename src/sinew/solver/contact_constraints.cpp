@@ -44,7 +44,7 @@ void ContactConstraints::start(const State& state, const std::vector<Vec3>* from
   for (const ContactPush& p : state.reactions.contacts) {
     Held h;
     h.contact.key = p.key;
-    h.contact.node[0] = p.node;
+    h.contact.node[0] = p.node[0];
     h.contact.obstacle = p.obstacle;
     h.push = p.push;
     held_.push_back(h);
@@ -223,7 +223,8 @@ std::vector<ContactPush> ContactConstraints::pushes() const {
   std::vector<ContactPush> out;
   for (const Held& h : held_) {
     if (h.push.isZero(0.0)) continue;
-    out.push_back({h.contact.key, h.contact.node[0], h.contact.obstacle, h.push});
+    const Contact& c = h.contact;
+    out.push_back({c.key, c.node, c.weight, c.count, c.obstacle, h.push});
   }
   return out;
 }

@@ -198,7 +198,8 @@ double Experiment::measure(const Quantity& q) {
     case Kind::obstacle: {
       const Obstacle& obstacle = named(model_.obstacles, q, "obstacle");
       const auto o = static_cast<std::size_t>(&obstacle - model_.obstacles.data());
-      return read_obstacles(model_, run_.state)[o].force[axis];
+      Workspace workspace(model_);
+      return read_obstacles(model_, run_.state, workspace)[o].force[axis];
     }
     case Kind::contact_time:
       return contact_time_;
