@@ -516,5 +516,38 @@ TEST(Build, ViscosityOfARatioIsTheSameRefinedAndRotated) {
   EXPECT_NEAR(build(text, {"b.scale=2.0"}).tet_viscosity[0], 2.0 * eta, 1e-9);
 }
 
+TEST(Build, BodiesThatOverlapAtTheStartAreSaid) {
+  const std::string cube = "shape = \"box\"\nsize = [1, 1, 1]\ncells = [4, 4, 4]\n";
+  const std::string text = "[contact]\n[body.a]\n" + cube + "[body.b]\n" + cube +
+                           "position = [0.1, 0.98, 0]\n[body.c]\n" + cube +
+                           "position = [0, -1, 0]\n";  // flush below a
+  const auto warnings = [&](const std::vector<std::string>& overrides, const std::string& more) {
+    BuildReport report;
+    build_model(parse_scene(text + more, "scene.toml", ".", overrides), &report);
+    return report.warnings;
+  };
+  const std::vector<std::string> said = warnings({}, "");
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("overlap at the start: 20 of the nodes of a are inside b, up to 0.02 m "
+                         "deep (body a, node "),
+            std::string::npos)
+      << said[0];
+  EXPECT_TRUE(warnings({"contact.bodies=false", "contact.self=true"}, "").empty());
+  EXPECT_TRUE(warnings({"b.position=[0.1, 1.02, 0]"}, "").empty());
+  EXPECT_TRUE(warnings({},
+                       "[pin.a]\nbody = \"a\"\nselect = { all = true }\n"
+                       "[pin.b]\nbody = \"b\"\nselect = { all = true }\n")
+                  .empty());
+  // Of many, the first few.
+  BuildReport report;
+  std::string heap = "[contact]\n";
+  for (int i = 0; i < 4; ++i)
+    heap += "[body.h" + std::to_string(i) + "]\n" + cube + "position = [" +
+            std::to_string(0.1 * i) + ", 0, 0]\n";
+  build_model(parse_scene(heap, "scene.toml", "."), &report);
+  ASSERT_EQ(report.warnings.size(), 6U);
+  EXPECT_EQ(report.warnings[5], "1 more pair of bodies overlaps");
+}
+
 }  // namespace
 }  // namespace sinew

@@ -305,15 +305,18 @@ std::vector<std::string> overlap_warnings(const Model& model) {
   std::vector<std::string> warnings;
   for (const auto& [pair, o] : pairs) {
     if (warnings.size() == most) {
-      warnings.push_back(fmt::format("{} more pairs of bodies overlap", pairs.size() - most));
+      warnings.push_back(pairs.size() == most + 1
+                             ? "1 more pair of bodies overlaps"
+                             : fmt::format("{} more pairs of bodies overlap", pairs.size() - most));
       break;
     }
+    const std::string& inner = model.bodies[uz(o.a)].name;
+    const std::string& outer = model.bodies[uz(o.b)].name;
     warnings.push_back(fmt::format(
-        "body {} is inside body {} at the start: {} of its nodes, up to {:.3g} m deep ({}); move "
-        "them apart by 'position', or they are pushed out slowly, or not at all where they are "
-        "deeper than a third of a tet",
-        model.bodies[uz(o.a)].name, model.bodies[uz(o.b)].name, o.nodes, o.depth,
-        model.node_name(o.deepest)));
+        "bodies {0} and {1} overlap at the start: {2} of the nodes of {0} are inside {1}, up to "
+        "{3:.3g} m deep ({4}); move them apart by 'position': contacts push out slowly what is a "
+        "little inside, and not at all what is deeper than a third of a tet",
+        inner, outer, o.nodes, o.depth, model.node_name(o.deepest)));
   }
   return warnings;
 }
