@@ -150,8 +150,8 @@ unsigned beyond(const Box& box, const Vec3& x0, const Vec3& x1) {
   return bits;
 }
 
-// Whether the triangle is so small at rest that its corners are enough to keep a ball, or the rod of
-// a capsule, of that radius [m] out: between them it sags into them by a hundredth of the radius.
+// Whether the triangle is so small at rest that its corners are enough to keep a ball, or the rod
+// of a capsule, of that radius [m] out: it enters between them by at most 9 % of an edge.
 bool is_small(const Model& model, const Triangle& t, double radius) {
   const auto& x = model.rest_position;
   const auto is_short = [&](std::size_t a, std::size_t b) {
