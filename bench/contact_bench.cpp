@@ -1,6 +1,7 @@
-// What finding contacts costs (docs/methods/contact.md): two beams W(k) that lie on each other, and
-// the liver against itself, at rest and while it is stretched.
+// What finding contacts and answering them costs (docs/methods/contact.md): two beams W(k) that lie
+// on each other, and the liver against itself, at rest and while it is stretched.
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 
 #include <string>
 #include <vector>
@@ -8,10 +9,16 @@
 #include "sinew/base/hash.h"
 #include "sinew/base/parallel.h"
 #include "sinew/base/random.h"
+#include "sinew/contact/find.h"
+#include "sinew/contact/ground.h"
+#include "sinew/contact/respond.h"
 #include "sinew/contact/surfaces.h"
 #include "sinew/forces/assemble.h"
+#include "sinew/forces/terms.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/scene/build.h"
+#include "sinew/solver/stable_step.h"
+#include "sinew/solver/verlet.h"
 
 namespace {
 
@@ -62,6 +69,50 @@ void LyingBeams(benchmark::State& state) {
   report(state, contacts, found);
 }
 
+// The answer of explicit steps to two beams W(k) that have come to lie on each other on the ground;
+// range(1): 0 from nothing, 1 from what contacts pushed with in the step before.
+void AnswerToLyingBeams(benchmark::State& state) {
+  const ThreadLimit one(1);
+  const auto k = state.range(0);
+  std::string text = "[ground]\nfriction = 0.5\n[contact]\nfriction = 0.3\n";
+  for (const char* name : {"lower", "upper"}) {
+    text += fmt::format(
+        "[body.{}]\nshape = \"beam\"\nsize = [0.1, 0.1, 0.4]\ncells = [{}, {}, {}]\n"
+        "position = {}\nyoung = 15e3\npoisson = 0.45\ndamping_ratio = 0.2\ndrag = 10\n",
+        name, k, k, 4 * k, name[0] == 'l' ? "[0, 0.05, 0]" : "[0.004, 0.15, 0.003]");
+  }
+  const Model model = build_model(parse_scene(text, "beams.toml", "."));
+  Workspace workspace(model);
+  State s = initial_state(model);
+  const double h = 0.8 * find_stable_step(model, s.position, workspace).step;
+  while (s.time < 1.0) verlet_step(model, h, s, workspace);
+
+  // The next step up to the answer.
+  compute_forces(model, s, workspace);
+  const std::vector<Vec3> before = s.position;
+  for (std::size_t i = 0; i < s.position.size(); ++i) {
+    s.half_velocity[i] += (h * model.inverse_mass[i]) * workspace.force[i];
+    s.position[i] += h * s.half_velocity[i];
+  }
+  const double reach = workspace.contacts->explicit_reach();
+  std::vector<Contact> found;
+  find_ground_contacts(model, s.position, reach, found);
+  workspace.contacts->find(before, s.position, s.time, s.time + h, reach, found);
+  if (state.range(1) == 0) s.reactions.contacts.clear();
+  ContactScratch scratch;
+  ContactReport answer;
+  State copy = s;
+  for (auto _ : state) {
+    state.PauseTiming();
+    copy = s;
+    state.ResumeTiming();
+    answer = respond_to_contacts(model, found, workspace.force, h, copy, scratch);
+  }
+  state.counters["contacts"] = static_cast<double>(found.size());
+  state.counters["push"] = static_cast<double>(answer.contacts);
+  state.counters["sweeps"] = answer.sweeps;
+}
+
 // range(0): 1 the fine liver; range(1): 1 stretched by 0.3 % more in every step, to and fro.
 void LiverAgainstItself(benchmark::State& state) {
   const ThreadLimit one(1);
@@ -87,6 +138,10 @@ void LiverAgainstItself(benchmark::State& state) {
 }
 
 BENCHMARK(LyingBeams)->Arg(4)->Arg(8)->Arg(17)->Unit(benchmark::kMicrosecond);
+BENCHMARK(AnswerToLyingBeams)
+    ->ArgsProduct({{4, 8}, {0, 1}})
+    ->ArgNames({"k", "warm"})
+    ->Unit(benchmark::kMicrosecond);
 BENCHMARK(LiverAgainstItself)
     ->ArgsProduct({{0, 1}, {0, 1}})
     ->ArgNames({"fine", "stretched"})
