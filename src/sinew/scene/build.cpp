@@ -21,7 +21,6 @@
 #include "sinew/scene/place.h"
 #include "sinew/scene/rigid_mesh.h"
 #include "sinew/scene/start.h"
-#include "sinew/scene/weight.h"
 
 namespace sinew {
 
@@ -130,7 +129,6 @@ std::vector<PlacedBody> add_bodies(const Scene& scene, Model& model, BuildReport
     }
     add_body(model, spec);
     check_finite(model, body);
-    if (const auto warning = weight_warning(scene, placed)) placed.warnings.push_back(*warning);
     if (report != nullptr)
       report->bodies.push_back({body.name, placed.source, placed.mesh.node_count(),
                                 placed.mesh.tet_count(), placed.warnings});
