@@ -69,7 +69,7 @@ export const states = [
       await page.keyboard.press("Space");
       await until(page, () => !window.sinew.state.status.running && window.sinew.state.contacts > 0);
       await page.evaluate(() => window.sinew.look([0.3, 0.8, 1], 0.7));
-      await drawn(page);
+      await drawn(page, 1);
     },
   },
   {
