@@ -268,7 +268,9 @@ TEST(Contacts, OfBodiesWithEachOtherAndWithHardObstacles) {
   for (std::size_t i = 0; i < frame.contact.size(); ++i) {
     const bool of_low = s.topology()->node[i] < s.model().bodies[0].nodes.end;
     (of_low ? low : high) += frame.contact[i];
-    if (frame.contact[i] != 0) EXPECT_NEAR(frame.position[3 * i + 1], 0.05, 0.01);
+    if (frame.contact[i] != 0) {
+      EXPECT_NEAR(frame.position[3 * i + 1], 0.05, 0.01);
+    }
   }
   EXPECT_GT(low, 0);
   EXPECT_GE(high, 4);
