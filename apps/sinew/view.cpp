@@ -141,7 +141,9 @@ int view(const Arguments& a) {
   options.scenes = a.scenes.empty() ? find_scenes() : std::filesystem::path(a.scenes);
   options.gallery = a.scene.empty();
   const std::string scene = a.scene.empty() ? first_scene(options.scenes) : a.scene;
-  server::Server server(options, load_scene_or_mesh(scene, a.set, a.framework));
+  const Scene loaded = load_scene_or_mesh(scene, a.set, a.framework);
+  for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
+  server::Server server(options, loaded);
   const StopOnSignal stop(server);
   fmt::print("{}\n", server.url());
   if (!a.quiet) fmt::print("Open it in a browser. Ctrl-C ends.\n");

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "sinew/base/random.h"
 #include "sinew/forces/terms.h"
 #include "tests/support/models.h"
@@ -64,6 +67,37 @@ TEST(Righting, TheForcesKeepMomentumAndAngularMomentum) {
   }
   EXPECT_LE(force.norm(), 1e-9 * size);
   EXPECT_LE(torque.norm(), 1e-9 * size);
+}
+
+// Thrown apart much faster than its waves run, it stays together: nothing leaves by more than
+// about its size.
+TEST(Righting, WhatFliesApartIsCaught) {
+  Model m = free_box();
+  for (double& modulus : m.tet_modulus) modulus *= 1e-6;
+  const double size = std::cbrt(m.bodies[0].rest_volume);
+  Workspace workspace(m);
+  State state = initial_state(m);
+  for (Vec3& x : state.position) x.z() = -x.z();  // inside out
+  const double speed = 100.0;                     // [m/s], of sizes of centimetres
+  for (std::size_t i = 0; i < state.position.size(); ++i) {
+    state.half_velocity[i] = speed * (random_point(i) - Vec3::Constant(0.5));
+  }
+  const double h = 0.01 * size / speed;
+  double farthest = 0.0;
+  for (int step = 0; step < 500; ++step) {
+    workspace.tangled = {1};
+    std::fill(workspace.force.begin(), workspace.force.end(), Vec3::Zero());
+    compute_forces(m, state, workspace);
+    workspace.tangled = {1};
+    right_tangled_bodies(m, state, h, workspace);
+    const std::vector<Vec3> goal = rest_shape_at(m, m.bodies[0], state.position);
+    for (std::size_t i = 0; i < state.position.size(); ++i) {
+      if (step > 100) farthest = std::max(farthest, (state.position[i] - goal[i]).norm());
+      state.half_velocity[i] += h * m.inverse_mass[i] * workspace.force[i];
+      state.position[i] += h * state.half_velocity[i];
+    }
+  }
+  EXPECT_LT(farthest, 2.0 * size);
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ TEST(Framework, AMaterialOfNothingNeedsAFlag) {
   const std::string message = refused(scene);
   EXPECT_TRUE(has(message, "x-scene.txt:2:14: object 1, block.mesh, has a Young's modulus of 0"))
       << message;
-  EXPECT_TRUE(has(message, "--young 1e5")) << message;
+  EXPECT_TRUE(has(message, "--young 1e7")) << message;
   FrameworkOptions options;
   options.young = 7e4;
   EXPECT_EQ(read(scene, options).bodies[0].material.young, 7e4);

@@ -1,6 +1,6 @@
 // Makes the pictures that are part of the project:
 //   node browser/pictures.mjs scenes [NAME...]   scenes/pictures/NAME.jpg, for the gallery
-//   node browser/pictures.mjs docs               docs/images/view*.jpg
+//   node browser/pictures.mjs docs [NAME...]     docs/images/view*.jpg
 // SINEW_BIN names the program; ./dev docs calls this.
 import { mkdirSync, readdirSync, statSync } from "node:fs";
 import { join } from "node:path";
@@ -18,8 +18,11 @@ const cards = {
   ligament: { frames: 60, from: [0.5, 0.12, 1], room: 1.02 },
   "liver-fine": { frames: 30, show: "w", room: 0.95 },
   liver: { frames: 16, show: "u", room: 0.95 },
+  organs: { frames: 56, from: [0.25, 0.42, 1], room: 0.23, labels: false },
+  pour: { frames: 50, color: "displacement", from: [0.3, 0.8, 1], room: 0.62, labels: false },
   press: { frames: 70, from: [0.35, 0.55, 1], room: 1.02 },
   pull: { frames: 58, color: "displacement", show: "u", from: [0.4, 0.25, 1] },
+  stack: { frames: 20, color: "stress", from: [0.6, 0.2, 1], room: 1.02 },
   "talk-bad-constants": { steps: 28, color: "stretch" },
   "talk-constants": { frames: 20, color: "displacement" },
   "talk-good-constants": { frames: 9, color: "displacement", show: "u" },
@@ -29,7 +32,7 @@ const cards = {
 };
 
 async function card(browser, name) {
-  const { frames = 0, steps = 0, color, show = "", from = FRONT, room = 1.15 } = cards[name] ?? { frames: 30 };
+  const { frames = 0, steps = 0, color, show = "", from = FRONT, room = 1.15, labels = true } = cards[name] ?? { frames: 30 };
   const server = await serve(`scenes/${name}.toml`);
   try {
     await visit(browser, `${server.url}#fine`, CARD, async (page) => {
@@ -46,7 +49,7 @@ async function card(browser, name) {
       const { time } = await state(page, "status");
       await until(page, (t) => Math.abs(window.sinew.state.time - t) < 1e-9, time, 120);
       for (const key of show) await page.keyboard.press(key);
-      await page.addStyleTag({ content: "#ui { visibility: hidden }" });
+      await page.addStyleTag({ content: `#ui${labels ? "" : ", .force"} { visibility: hidden !important }` });
       const drawn = await page.evaluate(([direction, space]) => {
         window.sinew.look(direction, space);
         return window.sinew.state.drawn;
@@ -80,13 +83,14 @@ async function document(browser, { name, scene, size, show, document: file }) {
 
 const [what, ...names] = process.argv.slice(2);
 if (what !== "scenes" && what !== "docs") {
-  console.error("which pictures? node browser/pictures.mjs scenes [NAME...] | docs");
+  console.error("which pictures? node browser/pictures.mjs scenes [NAME...] | docs [NAME...]");
   process.exit(2);
 }
 const browser = await launch();
 try {
   if (what === "docs") {
-    for (const s of states) if (s.document) await document(browser, s);
+    for (const s of states)
+      if (s.document && (names.length === 0 || names.includes(s.name))) await document(browser, s);
   } else {
     mkdirSync(join(root, "scenes/pictures"), { recursive: true });
     const all = readdirSync(join(root, "scenes")).filter((f) => f.endsWith(".toml")).map((f) => f.slice(0, -5));

@@ -61,6 +61,18 @@ export const states = [
     },
   },
   {
+    name: "poured", scene: "scenes/pour.toml", size: WIDE, document: "view-4",
+    async show(page) {
+      await page.selectOption("#coloring", "displacement");
+      await page.keyboard.press("k");
+      await runUntil(page, 1);
+      await page.keyboard.press("Space");
+      await until(page, () => !window.sinew.state.status.running && window.sinew.state.contacts > 0);
+      await page.evaluate(() => window.sinew.look([0.3, 0.8, 1], 0.7));
+      await drawn(page, 1);
+    },
+  },
+  {
     name: "pushed", scene: "scenes/liver.toml", size: WIDE,
     async show(page) {
       await page.selectOption("#coloring", "displacement");

@@ -142,6 +142,12 @@ export class Panel {
       ["Work put in", si(e.work_in, "J")],
       ["Volume", `${s.volume_ratio >= 1 ? "+" : ""}${percent(s.volume_ratio - 1, 2)}`],
       ["Springs", `+${percent(s.max_stretch, 2)} to −${percent(Math.abs(s.max_compress), 2)}`],
+      ...(s.contacts > 0 || s.deepest > 0
+        ? ([
+            ["Contacts", String(s.contacts)],
+            ["Deepest penetration", si(s.deepest, "m")],
+          ] as [string, string][])
+        : []),
       ...(s.inverted_tets > 0 ? ([["Inverted tets", String(s.inverted_tets)]] as [string, string][]) : []),
     ]);
   }

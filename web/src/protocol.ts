@@ -107,7 +107,8 @@ export interface Status {
   volume_ratio: number;
   max_stretch: number;
   max_compress: number;
-  contacts: number;
+  contacts: number; // in the last step
+  deepest: number; // penetration since the start [m]
   inverted_tets: number;
   hands: HandInfo[];
   probes: Vec[]; // displacements [m], in the order of the scene's probes
@@ -144,7 +145,7 @@ export interface Frame {
   position: Float32Array; // [m], 3 a node
   value: Float32Array;
   compared: Float32Array | null; // [m], 3 a node: of the compared body
-  contact: Uint8Array | null; // 1: touches the ground, an obstacle or the ball
+  contact: Uint8Array | null; // 1: touches the ground, an obstacle, the ball, a body
 }
 
 export type Command =

@@ -11,7 +11,8 @@ import { Spheres } from "./spheres";
 import { cornersOf, Stage } from "./stage";
 import { Tissue } from "./tissue";
 
-const NEAR = 1; // diagonals from the body: obstacles and ground that are in the first view
+const NEAR = 1; // diagonals from the body: obstacles that are in the first view
+const FALL = 3; // diagonals from the body: ground that it may fall to, and that is in the first view
 
 export class World {
   readonly stage: Stage;
@@ -99,7 +100,7 @@ export class World {
     if (ground) {
       const normal = new THREE.Vector3(...ground.normal).normalize();
       const plane = new THREE.Plane().setFromNormalAndCoplanarPoint(normal, new THREE.Vector3(...ground.point));
-      const near = NEAR * box.getSize(new THREE.Vector3()).length();
+      const near = FALL * box.getSize(new THREE.Vector3()).length();
       for (const corner of cornersOf(box)) {
         const height = plane.distanceToPoint(corner);
         if (height > 0 && height < near) seen.expandByPoint(corner.addScaledVector(normal, -height));

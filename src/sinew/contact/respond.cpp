@@ -17,6 +17,10 @@ constexpr double small = 5e-4;  // share of the largest impulse below which a ch
 constexpr double way_out = 0.2;
 constexpr double speed_out = 0.1;
 
+// Energy that bounces may seem to make, as a share of what they bring with them: the balance of a
+// step in which springs are at work is no better.
+constexpr double seems_made = 0.05;
+
 // How far a push of the step before is looked for around its place in the order.
 constexpr std::size_t recall_range = 8;
 
@@ -56,6 +60,15 @@ std::uint32_t slot_of(Index node, const State& state, ContactScratch& s) {
   return slot;
 }
 
+// Velocities lead positions: the gap at the end of the step is gap + h (v - velocity), and may not
+// be less than 0, or than what is left of the depth at its start. [m/s]
+double least_without_bounce(const Arrival& arrival, double h) {
+  const double start = arrival.contact->gap - h * arrival.velocity;
+  const double end =
+      start < 0.0 ? std::min(0.0, start + std::min(-way_out * start, h * speed_out)) : 0.0;
+  return (end - start) / h;
+}
+
 // Where a contact is to go: the velocity along the normal that it should end with.
 void aim(const Model& model, const std::vector<Vec3>& force, double h, const Vec3& velocity,
          Impact& impact, Arrival& arrival) {
@@ -69,12 +82,7 @@ void aim(const Model& model, const std::vector<Vec3>& force, double h, const Vec
     arrival.after = rebound(c.gap, arrival.velocity, arrival.pull, h, c.restitution);
     arrival.bounces = arrival.after.velocity > 0.0;
   }
-  // Velocities lead positions: the gap at the end of the step is gap + h (v - velocity), and may
-  // not be less than 0, or than what is left of the depth at its start.
-  const double start = c.gap - h * arrival.velocity;
-  const double end =
-      start < 0.0 ? std::min(0.0, start + std::min(-way_out * start, h * speed_out)) : 0.0;
-  impact.least = arrival.bounces ? arrival.after.velocity : (end - start) / h;
+  impact.least = arrival.bounces ? arrival.after.velocity : least_without_bounce(arrival, h);
 }
 
 // Fills impacts, arrivals and the slots of their nodes.
@@ -212,6 +220,89 @@ double moment_correction(const Impact& i, const Arrival& a, double kick) {
   return std::min(1.0, i.impulse / alone) * (i.mass * a.after.loss + alone * mean);
 }
 
+// Of a node's slot before the step's forces [m/s].
+Vec3 velocity_before(const Model& model, const std::vector<Vec3>& force, double kick,
+                     const ContactScratch& s, std::size_t slot) {
+  const auto i = uz(s.node[slot]);
+  return s.predicted[slot] - (kick * model.inverse_mass[i]) * force[i];
+}
+
+// What the impulses do, on the mean of the velocities of the half-steps before and after, less what
+// moving colliders bring in. [J]
+double work_within(const Model& model, const std::vector<Vec3>& force, double kick,
+                   const ContactScratch& s) {
+  double work = 0.0;
+  for (std::size_t k = 1; k < s.node.size(); ++k) {
+    const auto i = uz(s.node[k]);
+    if (model.inverse_mass[i] == 0.0) continue;
+    const Vec3 twice = velocity_before(model, force, kick, s, k) + s.velocity[k];
+    work += 0.5 * model.mass[i] * (s.velocity[k] - s.predicted[k]).dot(twice);
+  }
+  for (const Impact& i : s.impacts) work -= (i.impulse * i.normal + i.grip).dot(i.speed);
+  return work;
+}
+
+// What the bounces have made, less what they took, where that is more than seems so; otherwise 0.
+// Of what does not bounce, only places that would have parted by themselves, and that bounces of
+// others have pushed together, count: the rest balance forces, which do as much work. [J]
+double energy_of_bounces(const ContactScratch& s, double kick) {
+  double brought = 0.0;
+  double made = 0.0;
+  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
+    const Impact& i = s.impacts[k];
+    const Arrival& a = s.arrivals[k];
+    if (!a.bounces && !(a.velocity > 0.0)) continue;
+    const double after = i.normal.dot(relative(i, s.velocity) - i.speed);
+    if (a.bounces) {
+      brought += 0.5 * i.mass * a.velocity * a.velocity;
+      const double before = a.velocity - kick * a.pull;
+      made += i.impulse * 0.5 * (before + after) - moment_correction(i, a, kick);
+    } else {
+      made += i.impulse * 0.5 * (a.velocity + after);
+    }
+  }
+  return brought > 0.0 && made > seems_made * brought ? made : 0.0;
+}
+
+// Newton's law of restitution holds for one impact. Of several at once that share nodes each is to
+// end with its own share of its own speed, and the impulses that do this together can make energy
+// (Stewart 2000); in a heap of nodes that strike each other in every step it grows without bound.
+// Then the velocities are v0 + s (v1 - v0), v1 with the bounces, v0 without: as much of them as
+// takes back what was made [J]. Both keep momentum and let nothing in, and so does what lies
+// between.
+void bounce_less(const Model& model, const std::vector<Vec3>& force, double kick, double h,
+                 double made, ContactScratch& s) {
+  const std::vector<Impact> with = s.impacts;
+  std::vector<Vec3> change = s.velocity;  // v1 - v0 (slots)
+  const double work = work_within(model, force, kick, s);
+  s.velocity = s.predicted;
+  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
+    Impact& i = s.impacts[k];
+    if (s.arrivals[k].bounces) i.least = least_without_bounce(s.arrivals[k], h);
+    s.arrivals[k].bounces = false;
+    i.impulse = 0.0;
+    i.grip.setZero();
+  }
+  exchange_all(s);
+  // a s^2 + b s + c = 0: the work of what lies between is what it was, less what was made.
+  const double c = work_within(model, force, kick, s) - (work - made);
+  double a = 0.0;
+  for (std::size_t k = 1; k < s.node.size(); ++k) {
+    const auto i = uz(s.node[k]);
+    change[k] -= s.velocity[k];
+    if (model.inverse_mass[i] > 0.0) a += 0.5 * model.mass[i] * change[k].squaredNorm();
+  }
+  if (c >= 0.0 || a == 0.0) return;
+  const double b = made - c - a;
+  const double share =
+      std::clamp((-b + std::sqrt(std::max(0.0, b * b - 4.0 * a * c))) / (2.0 * a), 0.0, 1.0);
+  for (std::size_t k = 1; k < s.node.size(); ++k) s.velocity[k] += share * change[k];
+  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
+    s.impacts[k].impulse += share * (with[k].impulse - s.impacts[k].impulse);
+    s.impacts[k].grip += share * (with[k].grip - s.impacts[k].grip);
+  }
+}
+
 // Velocities and positions of the nodes. Impulses work on the mean of the velocities of the
 // half-steps before and after, as in Verlet's own balance: none where a body lies still, or sticks.
 // Returns what the bodies gain [J].
@@ -224,8 +315,7 @@ double move_nodes(const Model& model, const std::vector<Vec3>& force, double kic
     const auto i = uz(s.node[k]);
     const Vec3& v = s.velocity[k];
     const Vec3 change = v - s.predicted[k];
-    const Vec3 before = s.predicted[k] - (kick * model.inverse_mass[i]) * force[i];
-    s.mean[k] = 0.5 * (before + v);
+    s.mean[k] = 0.5 * (velocity_before(model, force, kick, s, k) + v);
     if (model.inverse_mass[i] == 0.0) continue;
     gained += model.mass[i] * change.dot(s.mean[k]);
     state.half_velocity[i] = v;
@@ -249,6 +339,8 @@ ContactReport respond_to_contacts(const Model& model, const std::vector<Contact>
   const double kick = 0.5 * (state.last_step + h);
   recall(pushes, kick, s);
   report.sweeps = exchange_all(s);
+  const double made = energy_of_bounces(s, kick);
+  if (made > 0.0) bounce_less(model, force, kick, h, made, s);
   const double gained = move_nodes(model, force, kick, h, s, state);
 
   bool bounced = false;

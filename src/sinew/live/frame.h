@@ -66,7 +66,8 @@ struct Status {
   Energies energy;
   double volume_ratio = 1.0;                     // of all bodies [-]
   double max_stretch = 0.0, max_compress = 0.0;  // [-]
-  std::int64_t contacts = 0;                     // nodes on the ground
+  std::int64_t contacts = 0;                     // in the last step, of whatever touches
+  double deepest = 0.0;                          // penetration since the start [m]
   std::int64_t inverted_tets = 0;
   std::vector<HandStatus> hands;
   std::vector<Vec3> probes;             // their displacements [m], in the scene's order

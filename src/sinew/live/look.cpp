@@ -4,13 +4,14 @@
 #include <cmath>
 
 #include "sinew/base/parallel.h"
-#include "sinew/contact/colliders.h"
 #include "sinew/forces/obstacles.h"
 
 namespace sinew::live {
 namespace {
-// A node is on the ground where it is no further from it than this share of the body's size.
+// What is no further apart than this share of the bodies' size touches.
 constexpr double touch = 1e-5;
+
+constexpr double bears = 0.33;  // of a contact's push: one corner of a triangle does
 }  // namespace
 
 std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& nodes) {
@@ -24,8 +25,8 @@ std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& 
 }
 
 std::vector<std::uint8_t> find_contacts(const Model& model, const State& state,
-                                        const Topology& topology) {
-  if (!model.ground && model.obstacles.empty()) return {};
+                                        const Topology& topology, ContactFinder* finder) {
+  if (!model.ground && model.obstacles.empty() && finder == nullptr) return {};
   const std::vector<Vec3> centers = obstacle_centers(model, state.time);
   std::vector<std::uint8_t> marks(topology.node.size(), 0);
   parallel_for(static_cast<Index>(marks.size()), [&](Index i) {
@@ -43,14 +44,20 @@ std::vector<std::uint8_t> find_contacts(const Model& model, const State& state,
     }
     marks[uz(i)] = touches ? 1 : 0;
   });
-  std::vector<std::uint8_t> hard(model.rest_position.size(), 0);
-  std::vector<Contact> contacts;
-  find_collider_contacts(model, state.position, state.position, state.time, state.time,
-                         touch * static_cast<double>(topology.diagonal), contacts);
-  for (const Contact& c : contacts)
-    for (int a = 0; a < c.count; ++a) hard[uz(c.node[static_cast<std::size_t>(a)])] = 1;
-  for (std::size_t i = 0; i < marks.size() && !contacts.empty(); ++i)
-    marks[i] = static_cast<std::uint8_t>(marks[i] | hard[uz(topology.node[i])]);
+  if (finder != nullptr) {
+    const double reach =
+        std::max(touch * static_cast<double>(topology.diagonal), finder->explicit_reach());
+    std::vector<Contact> contacts;
+    finder->find(state.position, state.position, state.time, state.time, reach, contacts);
+    std::vector<std::uint8_t> touched(model.rest_position.size(), 0);
+    for (const Contact& c : contacts) {
+      for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) {
+        if (std::abs(c.weight[a]) >= bears) touched[uz(c.node[a])] = 1;
+      }
+    }
+    for (std::size_t i = 0; i < marks.size(); ++i)
+      marks[i] = static_cast<std::uint8_t>(marks[i] | touched[uz(topology.node[i])]);
+  }
   if (std::find(marks.begin(), marks.end(), 1) == marks.end()) return {};
   return marks;
 }

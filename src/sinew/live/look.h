@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "sinew/contact/find.h"
 #include "sinew/live/frame.h"
 #include "sinew/live/topology.h"
 #include "sinew/model/state.h"
@@ -14,10 +15,12 @@ namespace sinew::live {
 // x of these nodes as floats [m] (3 a node).
 std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& nodes);
 
-// 1 for every node shown that lies on the ground or is pushed by an obstacle; empty where none
-// does.
+// 1 for every node shown that lies on the ground, is pushed by an obstacle, or touches another body
+// or its own; empty where none does. Of a contact those nodes that bear at least a third of it:
+// both sides have one. `finder`: of the model; null where only the ground and soft obstacles can
+// touch.
 std::vector<std::uint8_t> find_contacts(const Model& model, const State& state,
-                                        const Topology& topology);
+                                        const Topology& topology, ContactFinder* finder);
 
 // |a - b| of points [m], three coordinates each.
 std::vector<float> distances(const std::vector<float>& a, const std::vector<float>& b);

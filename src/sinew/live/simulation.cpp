@@ -164,7 +164,9 @@ void Simulation::rebuild(const Scene& scene, const State* keep) {
   scene_ = scene;
   stepped_ = std::move(stepped);
   stepping_ = std::move(stepping);  // before the model that it refers to goes
+  finder_.reset();                  // it knows the old one
   model_ = std::move(model);
+  if (ContactFinder::anything_to_find(*model_)) finder_ = std::make_unique<ContactFinder>(*model_);
   run_ = std::move(run);
   good_ = run_.state;
   const double stable = run_.stable_step > 0.0 ? run_.stable_step : no_limit;
@@ -329,6 +331,7 @@ Status Simulation::status() {
   s.max_stretch = range.stretch;
   s.max_compress = range.compress;
   s.contacts = run_.contacts;
+  s.deepest = run_.deepest;
   s.inverted_tets = count_inverted(*model_, run_.state.position);
   s.hands = hands_.status(*model_, run_.state);
   for (const ProbeReading& p : read_probes(*model_, run_.state.position)) {
@@ -356,7 +359,7 @@ Frame Simulation::frame() {
   // Compared bodies are shown at the same time, where both have got to.
   f.position = gather(other_ ? pair_.mine : run_.state.position, topology_->node);
   f.value = measure(quantity_, *model_, run_.state, *topology_);
-  f.contact = find_contacts(*model_, run_.state, *topology_);
+  f.contact = find_contacts(*model_, run_.state, *topology_, finder_.get());
   if (other_) {
     f.compared = gather(pair_.others, topology_->node);
     if (quantity_ == Quantity::distance) f.value = distances(f.position, f.compared);

@@ -101,6 +101,7 @@ class Simulation {
   Scene scene_;    // as its document says it
   Scene stepped_;  // the same, as it is stepped here
   std::unique_ptr<Model> model_;
+  std::unique_ptr<ContactFinder> finder_;  // of what frames mark; null: nothing but the ground can
   std::unique_ptr<Stepping> stepping_;
   RunState run_;
   State good_;  // where the last frame ended

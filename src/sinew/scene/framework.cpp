@@ -201,7 +201,7 @@ class Translator {
                   fmt::format("object {}, {}, has a Young's modulus of 0: it has no material, and "
                               "nothing holds it together",
                               number, mesh),
-                  "--young 1e5 gives such objects this modulus [Pa], --poisson 0.3 a Poisson's "
+                  "--young 1e7 gives such objects this modulus [Pa], --poisson 0.3 a Poisson's "
                   "ratio; or write one into the file",
                   young.where);
     young = value_of(*options_.young, {"--young", 0, 0});

@@ -14,6 +14,7 @@
 #include "sinew/scene/filled.h"
 #include "sinew/scene/keys.h"
 #include "sinew/scene/nearest_node.h"
+#include "sinew/scene/weight.h"
 
 namespace sinew {
 
@@ -182,7 +183,11 @@ PlacedBody place(const Scene& scene, const SceneBody& body) {
   const double volume = checked_volume(placed);
   const bool said_to_be_metres = body.scale_given && body.scale == 1.0;
   const auto warning = size_warning(volume, placed.high - placed.low, body.scale);
-  if (warning && !said_to_be_metres) placed.warnings.push_back(*warning);
+  if (warning && !said_to_be_metres) {
+    placed.warnings.push_back(*warning);
+  } else if (const auto flat = weight_warning(scene, placed)) {
+    placed.warnings.push_back(*flat);
+  }
   return placed;
 }
 

@@ -384,6 +384,7 @@ std::string status_text(const live::Status& s) {
                {"max_stretch", s.max_stretch},
                {"max_compress", s.max_compress},
                {"contacts", s.contacts},
+               {"deepest", s.deepest},
                {"inverted_tets", s.inverted_tets},
                {"hands", std::move(hands)},
                {"probes", std::move(probes)},
