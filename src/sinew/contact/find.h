@@ -32,6 +32,8 @@ class ContactFinder {
  private:
   const Model& model_;
   double explicit_reach_ = 0.0;
+  bool has_rigid_surfaces_ = false;
+  std::vector<Contact> part_;  // scratch
   std::unique_ptr<SurfaceContacts> surfaces_;
 };
 

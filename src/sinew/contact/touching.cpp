@@ -277,7 +277,6 @@ NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& t
   const NodeTouch other = end.any.triangle < 0 ? NodeTouch::none : NodeTouch::near;
   if (calm && end.fit.triangle < 0) return other;
 
-  c = Contact{};
   c.count = 4;
   c.friction = friction_;
   c.restitution = restitution_;

@@ -387,7 +387,8 @@ ConstraintError Constraints::update(const std::vector<Vec3>& x, const Workspace&
   now_ = std::move(next);
   const ContactConstraints::Change touching = touching_.update(x);
   now_.contacts = touching_.pushes();
-  return {std::max({ground, springs, cells, touching.distance}), std::max(grips, touching.grip)};
+  return {std::max({ground, springs, cells, touching.distance}), std::max(grips, touching.grip),
+          touching.anew};
 }
 
 void Constraints::store(State& state) const {

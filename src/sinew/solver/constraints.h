@@ -15,6 +15,7 @@ namespace sinew {
 struct ConstraintError {
   double distance = 0.0;  // largest change of a push over k, a way past the bound
   double grip = 0.0;      // change of the normal forces that friction goes by, of their sum
+  double anew = 0.0;      // the first, for contacts that were found anew
 };
 
 // Conditions on

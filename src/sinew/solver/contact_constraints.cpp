@@ -15,6 +15,8 @@ constexpr double depth_tolerance = 1e-4;
 constexpr double reach_share = 0.05;
 // Friction goes by normal forces that are right to this share.
 constexpr double grip_tolerance = 2e-3;
+// So often are contacts found anew before those that are held stay as they are.
+constexpr int free_passes = 8;
 
 template <typename F>
 void for_each_node(const Contact& c, const F& f) {
@@ -36,6 +38,7 @@ ContactConstraints::ContactConstraints(const Model& model, const std::vector<dou
 void ContactConstraints::start(const State& state, const std::vector<Vec3>* from, double step) {
   if (empty()) return;
   hardness_ = 1.0;
+  passes_ = 0;
   from_ = from;
   now_ = state.time;
   before_ = state.time - step;
@@ -78,6 +81,10 @@ void ContactConstraints::find(const std::vector<Vec3>& x) {
   std::sort(by_node.begin(), by_node.end(), [&](std::size_t a, std::size_t b) {
     return std::pair(place(held_[a]), a) < std::pair(place(held_[b]), b);
   });
+  if (passes_ > free_passes) {
+    add_new();
+    return;
+  }
   for (const Contact& c : found_) {
     next.push_back(hold(c));
     const auto same = std::lower_bound(
@@ -108,6 +115,19 @@ void ContactConstraints::find(const std::vector<Vec3>& x) {
     h.push += normal * n;
   }
   held_ = std::move(next);
+}
+
+// Of what was found only pairs that are not held yet: the others stay where and as they are.
+void ContactConstraints::add_new() {
+  const auto before = [](const Held& a, const Held& b) {
+    return comes_before(a.contact, b.contact);
+  };
+  const auto held = std::ssize(held_);
+  for (const Contact& c : found_) {
+    const Held h = hold(c);
+    if (!std::binary_search(held_.begin(), held_.begin() + held, h, before)) held_.push_back(h);
+  }
+  std::sort(held_.begin(), held_.end(), before);
 }
 
 // Way of the place across the normal since the start of the step [m].
@@ -183,6 +203,7 @@ void ContactConstraints::add_stiffness_times(const std::vector<Vec3>& u,
 ContactConstraints::Change ContactConstraints::update(const std::vector<Vec3>& x) {
   Change change;
   if (empty()) return change;
+  ++passes_;
   const auto error = [&](const Held& h, const Vec3& by) {
     const double k = hardness_ * h.stiffness;
     return k > 0.0 ? by.norm() / (k * tolerance_) : 0.0;
@@ -209,11 +230,11 @@ ContactConstraints::Change ContactConstraints::update(const std::vector<Vec3>& x
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (compliance_[i] == 0.0 || difference[i].isZero(0.0)) continue;
     const double k = hardness_ * ratio_ / compliance_[i];
-    change.distance = std::max(change.distance, difference[i].norm() / (k * tolerance_));
+    change.anew = std::max(change.anew, difference[i].norm() / (k * tolerance_));
   }
   for (const Held& h : held_) {
     if (h.push.isZero(0.0)) {
-      change.distance = std::max(change.distance, -h.contact.gap / tolerance_);
+      change.anew = std::max(change.anew, -contact_gap(h.contact, x) / tolerance_);
     }
   }
   return change;

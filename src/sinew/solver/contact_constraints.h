@@ -13,8 +13,9 @@ namespace sinew {
 
 // A condition gap >= 0 with friction for every contact that was found, with places, weights and
 // normals as they were then: within a pass of minimise_within they stay, so that what is minimised
-// is smooth and has a tangent; update() finds them anew. Contacts keep their push from pass to pass
-// and from step to step by their key, or by the node where the partner has changed.
+// is smooth and has a tangent; update() finds them anew. After some passes it only adds to them: in
+// a fold two places can go to and fro between two faces for ever. Contacts keep their push from
+// pass to pass and from step to step by their key, or by the node where the partner has changed.
 class ContactConstraints {
  public:
   // compliance: of the nodes [m/N]; ratio: of a contact's stiffness and what its nodes resist with.
@@ -45,6 +46,7 @@ class ContactConstraints {
   struct Change {
     double distance = 0.0;
     double grip = 0.0;
+    double anew = 0.0;  // what the contacts found anew are off by
   };
   Change update(const std::vector<Vec3>& x);
   void harden(double factor) { hardness_ *= factor; }
@@ -65,6 +67,7 @@ class ContactConstraints {
     Vec3 start = Vec3::Zero();  // contact_offset where the step starts, the anchor there too [m]
   };
   void find(const std::vector<Vec3>& x);
+  void add_new();
   Held hold(const Contact& c) const;
   Vec3 slip(const Held& h, const std::vector<Vec3>& x) const;
   Vec3 push(const Held& h, const std::vector<Vec3>& x) const;
@@ -75,6 +78,7 @@ class ContactConstraints {
   double tolerance_ = 0.0;  // [m]
   double reach_ = 0.0;      // [m]
   double hardness_ = 1.0;
+  int passes_ = 0;                  // since start()
   std::vector<double> compliance_;  // [m/N] (nodes)
   std::unique_ptr<ContactFinder> finder_;
   const std::vector<Vec3>* from_ = nullptr;

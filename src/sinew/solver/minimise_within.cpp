@@ -36,7 +36,7 @@ NewtonReport minimise_within(const Objective& objective, LinearSolver& linear,
     report.rests = of_pass.rests && o.tolerance == options.tolerance;
     report.stopped = of_pass.stopped;
     const ConstraintError error = objective.constraints->update(state.position, workspace);
-    report.within = error.distance <= 1.0 && error.grip <= 1.0;
+    report.within = error.distance <= 1.0 && error.grip <= 1.0 && error.anew <= 1.0;
     if (!of_pass.rests || of_pass.stopped || (report.rests && report.within)) return report;
     if (error.distance > std::max(1.0, slow * distance)) objective.constraints->harden(stiffer);
     distance = error.distance;
