@@ -16,7 +16,7 @@ constexpr double reach_share = 0.05;
 // Friction goes by normal forces that are right to this share.
 constexpr double grip_tolerance = 2e-3;
 // So often are contacts found anew before those that are held stay as they are.
-constexpr int free_passes = 8;
+constexpr int free_passes = 6;
 
 template <typename F>
 void for_each_node(const Contact& c, const F& f) {
@@ -217,6 +217,7 @@ ContactConstraints::Change ContactConstraints::update(const std::vector<Vec3>& x
     const double grip = h.contact.friction * h.contact.normal.dot(p);
     grip_change += std::abs(grip - h.grip);
     grips += grip;
+    h.grip = 0.5 * (h.grip + grip);  // of those that stay held: the mean does not go to and fro
   }
   if (grip_change > 0.0) {
     change.grip = grips > 0.0 ? grip_change / (grip_tolerance * grips) : no_limit;
@@ -236,6 +237,11 @@ ContactConstraints::Change ContactConstraints::update(const std::vector<Vec3>& x
     if (h.push.isZero(0.0)) {
       change.anew = std::max(change.anew, -contact_gap(h.contact, x) / tolerance_);
     }
+  }
+  // Pushes that are off because places have changed are no reason to harden.
+  if (change.anew > 1.0) {
+    change.anew = std::max(change.anew, change.distance);
+    change.distance = 0.0;
   }
   return change;
 }
