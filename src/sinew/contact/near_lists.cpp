@@ -12,7 +12,7 @@ namespace {
 // Farther than its range, as a share of the triangles' size, that a list looks: larger skins last
 // longer and hold more. Of two bodies that lie on each other the lists are full; of a body with
 // itself they are empty unless it is folded.
-constexpr double skin_share = 0.12;
+constexpr double skin_share = 0.4;
 constexpr double self_skin_share = 0.8;
 // Of the skin: lists that have used more of it are made anew; where some have to be, so are those
 // that have used more than the second, for fewer looks.
