@@ -27,7 +27,7 @@ struct Extent {
 // The rotation nearest to `a`, by turning `r` towards it (Mueller, Bender, Chentanez, Macklin
 // 2016). Not to the last digit: any rotation will do, a near one leaves less.
 Mat3 turned_towards(const Mat3& a, Mat3 r) {
-  for (int n = 0; n < 4; ++n) {
+  for (int n = 0; n < 20; ++n) {
     Vec3 torque = Vec3::Zero();
     double weight = 0.0;
     for (int c = 0; c < 3; ++c) {
