@@ -129,7 +129,7 @@ TEST(SurfaceContacts, NothingGetsIntoAClosedSurfaceUnseen) {
   const std::vector<TetMesh> targets = {sphere(0.05, 3), box(Vec3(0.08, 0.08, 0.08), {2, 2, 2}),
                                         hollow_sphere(0.05, 0.045, 1)};
   for (const TetMesh& target : targets) {
-    const TetMesh grains = cloud(sanitized ? 100 : 400, 0.15, 1e-4, rng,
+    const TetMesh grains = cloud(sanitized ? 60 : 400, 0.15, 1e-4, rng,
                                  [](const Vec3& p) { return p.cwiseAbs().maxCoeff() > 0.055; });
     const Model model = touching_model({target, grains}, {true, false, 0.5, 0.0});
     Index all_inside = 0;
@@ -165,7 +165,7 @@ TEST(SurfaceContacts, NothingGetsIntoAClosedSurfaceUnseen) {
       EXPECT_EQ(seen, inside) << speed;
       all_inside += inside;
     }
-    EXPECT_GT(all_inside, sanitized ? 15 : 80);
+    EXPECT_GT(all_inside, sanitized ? 5 : 80);
   }
 }
 
