@@ -9,6 +9,8 @@ namespace sinew {
 namespace {
 
 constexpr std::uint64_t edge_kind = std::uint64_t{1} << 62;
+// How much deeper than its end is away an edge may be before its answer, as a share of the size.
+constexpr double end_share = 0.05;
 
 Vec3 unit(const Vec3& v) {
   const double n = v.norm();
@@ -87,11 +89,15 @@ bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Co
   // At the end.
   if (over) {
     Vec3 n = unit((x[uz(a[1])] - x[uz(a[0])]).cross(x[uz(b[1])] - x[uz(b[0])]));
+    // Deeper than the nearest end of either edge is away, they are not what is touched there.
+    const double to_end = std::min(std::min(on.s, 1.0 - on.s) * (x[uz(a[1])] - x[uz(a[0])]).norm(),
+                                   std::min(on.t, 1.0 - on.t) * (x[uz(b[1])] - x[uz(b[0])]).norm());
     for (int turn = 0; turn < 2; ++turn, n = -n) {
       if (!supports(eb, n, moves, 1.0, 0.1) || !supports(ea, -n, moves, 1.0, 0.1)) continue;
       set(on.s, on.t, n);
       if (!(c.gap < moves.reach || (c.gap <= 0.0 && moves.reach == 0.0))) continue;
       if (c.gap < -depth_share * size) continue;
+      if (c.gap < -to_end - end_share * size) continue;
       if (self && !(std::abs(c.gap) < self_share * rest_distance(a, b))) continue;
       const double before = contact_gap(c, moves.from);
       c.moment = before <= 0.0 ? 0.0 : (c.gap < 0.0 ? before / (before - c.gap) : 1.0);
