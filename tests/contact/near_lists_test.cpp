@@ -151,7 +151,9 @@ TEST(NearLists, FindWhatAllPairsGive) {
     }
   }
   EXPECT_GT(contacts, 20u * seeds);  // or nothing was tested
-  EXPECT_GT(edges, 0u);
+  if (seeds > 2) {
+    EXPECT_GT(edges, seeds);
+  }
   EXPECT_GT(on_the_way, 2u * seeds);
 }
 
