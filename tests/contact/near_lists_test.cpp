@@ -48,7 +48,8 @@ std::vector<Contact> all_pairs(const Model& model, const Moves& moves) {
       };
       for (const Index e : ids(s.owner_edges[uz(a)])) {
         for (const Index f : ids(s.owner_edges[uz(b)])) {
-          if ((a == b && f <= e) || !touching.may_meet(e, f, a == b)) continue;
+          if ((a == b && f <= e) || !touching.may_meet(e) || !touching.may_meet(f)) continue;
+          if (!touching.is_sharp(e, a == b) && !touching.is_sharp(f, a == b)) continue;
           if (!touching.is_sharp(f, a == b) && carried(e)) continue;
           if (!touching.is_sharp(e, a == b) && carried(f)) continue;
           if (touching.edges_touch(e, f, false, moves, c)) found.push_back(c);

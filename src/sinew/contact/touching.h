@@ -67,10 +67,6 @@ class Touching {
   bool is_sharp(Index edge, bool self) const {
     return surface_.edge_bend[uz(edge)] > (self ? sharp_to_self : sharp);
   }
-  // Whether two edges, `self` of one body, meet at all: one is sharp and neither concave.
-  bool may_meet(Index edge, Index other, bool self) const {
-    return may_meet(edge) && may_meet(other) && (is_sharp(edge, self) || is_sharp(other, self));
-  }
 
   // The contact of a node with an owner's surface, of which `triangles` holds at least those within
   // node_range at either end of the step and those that it may meet on the way. The node may belong
@@ -96,7 +92,7 @@ class Touching {
         .subspan(begin, uz(neighbour_start_[uz(node_slot) + 1]) - begin);
   }
   Index slot_of(Index node) const { return slot_of_[uz(node)]; }  // -1: not on a surface
-  // Whether an edge meets any other at all.
+  // Whether an edge meets any other at all; of two that do, one has to be sharp.
   bool may_meet(Index edge) const {
     return surface_.edge_bend[uz(edge)] > concave && surface_.edge_triangles[uz(edge)][1] >= 0;
   }
