@@ -55,7 +55,7 @@ void VerletStep(benchmark::State& state) {
 
 // Steps of 1/60 s from the start, to a residual of 10^-range(1). Time against Newton steps and
 // products over several tolerances gives what each of them costs: newton_cost and product_cost of
-// run/choose_stepper.h, in steps of Verlet on the same model.
+// sim/choose_stepper.h, in steps of Verlet on the same model.
 void ImplicitStep(benchmark::State& state) {
   const ThreadLimit one(1);
   const Model model = model_of(state.range(0));

@@ -12,8 +12,8 @@
 
 #include "sinew/io/file_io.h"
 #include "sinew/io/vtu.h"
-#include "sinew/run/checkpoint.h"
 #include "sinew/scene/build.h"
+#include "sinew/sim/checkpoint.h"
 
 namespace sinew {
 namespace {

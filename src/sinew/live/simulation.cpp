@@ -13,11 +13,11 @@
 #include "sinew/forces/springs.h"
 #include "sinew/live/carry_over.h"
 #include "sinew/live/look.h"
-#include "sinew/run/obstacle_reading.h"
 #include "sinew/run/recorder.h"
 #include "sinew/run/summary.h"
 #include "sinew/scene/build.h"
 #include "sinew/scene/document.h"
+#include "sinew/sim/obstacle_reading.h"
 
 namespace sinew::live {
 namespace {

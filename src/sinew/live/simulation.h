@@ -12,7 +12,7 @@
 #include "sinew/live/command.h"
 #include "sinew/live/frame.h"
 #include "sinew/live/hands.h"
-#include "sinew/run/stepping.h"
+#include "sinew/sim/stepping.h"
 
 namespace sinew::live {
 

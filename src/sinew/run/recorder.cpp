@@ -15,8 +15,8 @@
 #include "sinew/io/file_io.h"
 #include "sinew/io/pvd.h"
 #include "sinew/io/vtu.h"
-#include "sinew/run/obstacle_reading.h"
 #include "sinew/run/summary.h"
+#include "sinew/sim/obstacle_reading.h"
 
 namespace sinew {
 namespace {

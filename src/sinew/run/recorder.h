@@ -8,8 +8,8 @@
 
 #include "sinew/forces/workspace.h"
 #include "sinew/io/vtu.h"
-#include "sinew/run/stepping.h"
 #include "sinew/scene/scene.h"
+#include "sinew/sim/stepping.h"
 
 namespace sinew {
 

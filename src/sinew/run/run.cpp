@@ -10,10 +10,10 @@
 #include "sinew/forces/righting.h"
 #include "sinew/forces/springs.h"
 #include "sinew/io/file_io.h"
-#include "sinew/run/checkpoint.h"
 #include "sinew/run/force_curve.h"
 #include "sinew/run/recorder.h"
 #include "sinew/scene/build.h"
+#include "sinew/sim/checkpoint.h"
 
 namespace sinew {
 namespace {

@@ -9,7 +9,7 @@
 #include "sinew/forces/springs.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
-#include "sinew/run/obstacle_reading.h"
+#include "sinew/sim/obstacle_reading.h"
 
 namespace sinew {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/terms.h"
-#include "sinew/run/stepping.h"
+#include "sinew/sim/stepping.h"
 
 namespace sinew {
 

@@ -9,9 +9,9 @@
 
 #include "sinew/forces/terms.h"
 #include "sinew/mesh/tet_mesh.h"
-#include "sinew/run/obstacle_reading.h"
 #include "sinew/scene/build.h"
 #include "sinew/scene/keys.h"
+#include "sinew/sim/obstacle_reading.h"
 #include "sinew/solver/modes.h"
 
 namespace sinew::study {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "sinew/model/model.h"
-#include "sinew/run/stepping.h"
 #include "sinew/run/summary.h"
 #include "sinew/scene/scene.h"
+#include "sinew/sim/stepping.h"
 #include "sinew/study/case.h"
 
 namespace sinew::study {

@@ -1,4 +1,4 @@
-#include "sinew/run/obstacle_reading.h"
+#include "sinew/sim/obstacle_reading.h"
 
 #include <algorithm>
 

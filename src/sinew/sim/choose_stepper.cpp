@@ -1,4 +1,4 @@
-#include "sinew/run/choose_stepper.h"
+#include "sinew/sim/choose_stepper.h"
 
 #include <fmt/format.h>
 

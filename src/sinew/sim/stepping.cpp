@@ -1,4 +1,4 @@
-#include "sinew/run/stepping.h"
+#include "sinew/sim/stepping.h"
 
 #include <fmt/format.h>
 
@@ -8,7 +8,7 @@
 #include "sinew/base/error.h"
 #include "sinew/forces/packed.h"
 #include "sinew/forces/volume.h"
-#include "sinew/run/choose_stepper.h"
+#include "sinew/sim/choose_stepper.h"
 #include "sinew/solver/verlet.h"
 
 namespace sinew {

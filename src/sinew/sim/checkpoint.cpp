@@ -1,4 +1,4 @@
-#include "sinew/run/checkpoint.h"
+#include "sinew/sim/checkpoint.h"
 
 #include <bit>
 #include <cstring>

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "sinew/run/stepping.h"
+#include "sinew/sim/stepping.h"
 
 namespace sinew {
 

@@ -10,9 +10,9 @@
 #include "sinew/base/parallel.h"
 #include "sinew/contact/overlaps.h"
 #include "sinew/forces/terms.h"
-#include "sinew/run/checkpoint.h"
-#include "sinew/run/stepping.h"
 #include "sinew/scene/build.h"
+#include "sinew/sim/checkpoint.h"
+#include "sinew/sim/stepping.h"
 
 namespace sinew {
 namespace {
