@@ -68,7 +68,7 @@ class Figures:
                                 zip(self.result["limits"][0]["bandwidth"], sizes)]
         spreads = sorted(r["time"]["spread"] for r in self.result["rows"])
         return text + table(titles + ["FMA [GFLOP/s]"], rows) + (
-            f"\nHow much else the machine did: the distance between the quartiles of a row's "
+            f"\nOther load on the machine: the distance between the quartiles of a row's "
             f"repetitions is {100 * spreads[len(spreads) // 2]:.0f} % of their median in the "
             f"middle row, {100 * spreads[-1]:.0f} % in the worst.\n")
 
