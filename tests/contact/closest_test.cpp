@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include "sinew/base/random.h"
+#include "tests/support/fields.h"
 
 namespace sinew {
 namespace {
 
-Vec3 somewhere(std::uint64_t& seed) {
-  return 2.0 * random_point(seed++) - Vec3::Ones();
-}
+using test::somewhere;
 
 TEST(Closest, NoSampledPairIsNearer) {
   std::uint64_t seed = 5000000;

@@ -5,9 +5,12 @@
 #include <functional>
 
 #include "sinew/base/random.h"
+#include "tests/support/fields.h"
 
 namespace sinew {
 namespace {
+
+using test::somewhere;
 
 struct Named {
   const char* name;
@@ -28,10 +31,6 @@ const std::vector<Named>& shapes() {
        [](const Vec3& a, const Vec3& b) { return enters_box(a, b, half); }},
   };
   return all;
-}
-
-Vec3 somewhere(std::uint64_t& seed) {
-  return 2.0 * random_point(seed++) - Vec3::Ones();
 }
 
 TEST(Shapes, TheNearestPointIsOnTheSurfaceAlongTheNormal) {

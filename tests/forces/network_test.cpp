@@ -10,11 +10,15 @@
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
 #include "tests/support/effort.h"
+#include "tests/support/fields.h"
 #include "tests/support/models.h"
 #include "tests/support/tangent.h"
 
 namespace sinew {
 namespace {
+
+using test::mapped;
+using test::shaken;
 
 Model irregular_box(const Material& material, int cells = 2, double jitter = 0.25) {
   BodySpec spec;
@@ -27,20 +31,6 @@ Model irregular_box(const Material& material, int cells = 2, double jitter = 0.2
   add_body(m, spec);
   finish(m);
   return m;
-}
-
-std::vector<Vec3> affine(const std::vector<Vec3>& X, const Mat3& F) {
-  std::vector<Vec3> x;
-  for (const Vec3& p : X) x.push_back(F * p);
-  return x;
-}
-
-std::vector<Vec3> shaken(const std::vector<Vec3>& X, double size) {
-  std::vector<Vec3> x(X);
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    x[i] += size * (2.0 * random_point(i + 1000) - Vec3::Ones());
-  }
-  return x;
 }
 
 std::vector<Vec3> forces(const Model& m, const std::vector<Vec3>& x) {
@@ -61,7 +51,7 @@ TEST(Network, AffineDeformationOfIrregularMeshesIsExact) {
       const Model m = irregular_box(material, 4, 0.3);
       Mat3 F;
       F << 1.1, 0.2, -0.1, 0.05, 0.9, 0.1, 0.0, -0.15, 1.05;
-      const std::vector<Vec3> f = forces(m, affine(m.rest_position, F));
+      const std::vector<Vec3> f = forces(m, mapped(m.rest_position, F));
       double scale = 0.0;
       for (const Vec3& e : f) scale = std::max(scale, e.norm());
       Mat3 stress = Mat3::Zero();
@@ -83,7 +73,7 @@ TEST(Network, AffineDeformationOfIrregularMeshesIsExact) {
       Workspace workspace(m);
       const double W =
           0.5 * mu * (F.squaredNorm() - 3.0) - mu * (J - 1.0) + 0.5 * kappa * (J - 1.0) * (J - 1.0);
-      EXPECT_NEAR(elastic_energy(m, affine(m.rest_position, F), workspace) / V, W, 1e-10 * W);
+      EXPECT_NEAR(elastic_energy(m, mapped(m.rest_position, F), workspace) / V, W, 1e-10 * W);
     }
   }
 }
@@ -223,7 +213,7 @@ TEST(Network, PressureIsMinusTheMeanStress) {
       EXPECT_NEAR(p, 0.0, 1e-9 * material.young);
     }
     const double strain = 1e-6;
-    state.position = affine(m.rest_position, (1.0 - strain) * Mat3::Identity());
+    state.position = mapped(m.rest_position, (1.0 - strain) * Mat3::Identity());
     compute_forces(m, state, workspace);
     const double bulk = material.young / (3.0 * (1.0 - 2.0 * material.poisson));
     for (const double p : measure_pressure(m, state.position, workspace)) {

@@ -6,16 +6,13 @@
 
 #include "sinew/forces/packed.h"
 #include "sinew/forces/stiffness.h"
+#include "tests/support/fields.h"
 #include "tests/support/models.h"
 
 namespace sinew {
 namespace {
 
-double norm(const std::vector<Vec3>& v) {
-  double sum = 0.0;
-  for (const Vec3& x : v) sum += x.squaredNorm();
-  return std::sqrt(sum);
-}
+using test::norm;
 
 // |packed - plain| / |plain| of (a K + b C) u for a wave of the length of an edge.
 double mismatch(const Model& m, const std::vector<Vec3>& x, double a, double b) {

@@ -14,9 +14,12 @@
 #include "sinew/forces/springs.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/shapes.h"
+#include "tests/support/fields.h"
 
 namespace sinew {
 namespace {
+
+using test::norm;
 
 Model bar(const std::vector<Material>& materials, Index k = 3) {
   Model m;
@@ -111,12 +114,6 @@ TEST(PackedForces, KnowTetVolumeAndRegions) {
   const Model two =
       bar({material(Law::neo_hookean, 1e4, 0.45), material(Law::neo_hookean, 1e9, 0.3)});
   EXPECT_LT(difference(packed(two, moved(two, 2e-3)), plain(two, moved(two, 2e-3))), 3e-6);
-}
-
-double norm(const std::vector<Vec3>& f) {
-  double sum = 0.0;
-  for (const Vec3& v : f) sum += v.squaredNorm();
-  return std::sqrt(sum);
 }
 
 TEST(PackedForces, NothingIsLeftAtRest) {

@@ -27,7 +27,7 @@ Model tied() {
   return m;
 }
 
-std::vector<Vec3> scattered(const Model& m, double way) {
+std::vector<Vec3> displaced(const Model& m, double way) {
   std::vector<Vec3> x = m.rest_position;
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += way * random_point(i);
   return x;
@@ -47,7 +47,7 @@ TEST(Ties, PullNothingThatHasOnlyMovedTurnedOrBeenStretchedAsAWhole) {
 
 TEST(Ties, KeepMomentumAndAngularMomentum) {
   const Model m = tied();
-  const std::vector<Vec3> x = scattered(m, 0.3);
+  const std::vector<Vec3> x = displaced(m, 0.3);
   std::vector<Vec3> f(x.size(), Vec3::Zero());
   add_tie_forces(m, x, f);
   Vec3 force = Vec3::Zero();
@@ -65,7 +65,7 @@ TEST(Ties, KeepMomentumAndAngularMomentum) {
 
 TEST(Ties, ForceAndProductAreTheDerivativesOfTheEnergy) {
   const Model m = tied();
-  const std::vector<Vec3> x = scattered(m, 0.3);
+  const std::vector<Vec3> x = displaced(m, 0.3);
   std::vector<Vec3> f(x.size(), Vec3::Zero());
   add_tie_forces(m, x, f);
   const double step = 1e-5;
@@ -93,7 +93,7 @@ TEST(Ties, ForceAndProductAreTheDerivativesOfTheEnergy) {
 
 TEST(Ties, AreTheSpringsOfTheirPairs) {
   const Model m = tied();
-  const std::vector<Vec3> x = scattered(m, 0.3);
+  const std::vector<Vec3> x = displaced(m, 0.3);
   double energy = 0.0;
   for_each_tie_pair(m, [&](Index i, Index j, double k) {
     energy += 0.5 * k * (x[uz(i)] - x[uz(j)]).squaredNorm();
@@ -104,7 +104,7 @@ TEST(Ties, AreTheSpringsOfTheirPairs) {
 TEST(Ties, TheModelsForcesHaveThemInBothPrecisions) {
   const Model m = tied();
   State s = initial_state(m);
-  s.position = scattered(m, 0.3);
+  s.position = displaced(m, 0.3);
   std::vector<Vec3> f(s.position.size(), Vec3::Zero());
   add_tie_forces(m, s.position, f);
   Workspace w(m);

@@ -9,10 +9,15 @@
 #include "sinew/base/random.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
+#include "tests/support/fields.h"
 #include "tests/support/models.h"
 
 namespace sinew {
 namespace {
+
+using test::mapped;
+using test::scattered;
+using test::shaken;
 
 using Field = std::vector<Vec3>;
 
@@ -39,26 +44,6 @@ Mat3 edges_of(const Field& x, const Tet& t) {
   Mat3 edges;
   edges << x[uz(t[1])] - x[uz(t[0])], x[uz(t[2])] - x[uz(t[0])], x[uz(t[3])] - x[uz(t[0])];
   return edges;
-}
-
-Field affine(const Field& X, const Mat3& A) {
-  Field out;
-  for (const Vec3& p : X) out.push_back(A * p);
-  return out;
-}
-
-Field scattered(std::size_t count, double size, std::uint64_t seed) {
-  Field out;
-  for (std::size_t i = 0; i < count; ++i) {
-    out.push_back(size * (2.0 * random_point(i + seed) - Vec3::Ones()));
-  }
-  return out;
-}
-
-Field shaken(const Field& X, double size) {
-  Field x = scattered(X.size(), size, 1000);
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += X[i];
-  return x;
 }
 
 // What the viscosity alone pulls every node with: -C v.
@@ -183,7 +168,7 @@ TEST(Viscosity, AffineFlowDissipatesExactly) {
   Mat3 shear = Mat3::Zero();
   shear(0, 1) = 3.0;  // dgamma/dt [1/s]: the power is eta (dgamma/dt)^2 V
   const double volume = 1e-3;
-  EXPECT_NEAR(viscous_power(m, m.rest_position, affine(m.rest_position, shear)),
+  EXPECT_NEAR(viscous_power(m, m.rest_position, mapped(m.rest_position, shear)),
               20.0 * 9.0 * volume, 1e-12);
   // Of any flow of any deformation: 2 eta |sym(F^T dF/dt)|^2 V.
   Mat3 F, rate;
@@ -191,7 +176,7 @@ TEST(Viscosity, AffineFlowDissipatesExactly) {
   rate << 0.5, -1.0, 2.0, 0.3, 0.7, -0.4, 1.1, 0.2, -0.9;
   const Mat3 turning = F.transpose() * rate;
   const double square = (0.5 * (turning + turning.transpose())).squaredNorm();
-  EXPECT_NEAR(viscous_power(m, affine(m.rest_position, F), affine(m.rest_position, rate)),
+  EXPECT_NEAR(viscous_power(m, mapped(m.rest_position, F), mapped(m.rest_position, rate)),
               2.0 * 20.0 * square * volume, 1e-12);
 }
 

@@ -10,6 +10,7 @@
 #include "sinew/mesh/doctor.h"
 #include "sinew/mesh/shapes.h"
 #include "tests/support/effort.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
@@ -24,7 +25,7 @@ BodySpec body_of(const TetMesh& mesh, const Material& material) {
 }
 
 TetMesh liver() {
-  TetMesh mesh = io::read_mesh(std::string(SINEW_SOURCE_DIR) + "/scenes/meshes/liver-10mm.mesh");
+  TetMesh mesh = io::read_mesh(test::source_path("scenes/meshes/liver-10mm.mesh"));
   for (Vec3& x : mesh.nodes) x *= 0.001;
   return mesh;
 }

@@ -5,13 +5,14 @@
 
 #include "fuzz/io_targets.h"
 #include "sinew/io/file_io.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew::io {
 namespace {
 namespace fs = std::filesystem;
 
 void replay(const std::string& target, void (*run)(std::string_view)) {
-  const fs::path root(SINEW_SOURCE_DIR);
+  const fs::path root(test::source_path(""));
   int files = 0;
   for (const auto& entry : fs::directory_iterator(root / "fuzz" / "corpus" / target)) {
     SCOPED_TRACE(entry.path().string());

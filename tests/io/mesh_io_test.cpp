@@ -10,6 +10,7 @@
 #include "sinew/base/error.h"
 #include "sinew/io/file_io.h"
 #include "tests/io/two_tets.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew::io {
 namespace {
@@ -158,7 +159,7 @@ TEST_F(MeshIo, LiverThroughAllFormats) {
                                       {{1, 8.327}, {2, 157.425}, {3, 1596.134}}}};
   for (const Liver& liver : livers) {
     const TetMesh mesh =
-        read_mesh(std::string(SINEW_SOURCE_DIR) + "/scenes/meshes/liver-" + liver.name + ".mesh");
+        read_mesh(test::source_path("scenes/meshes/liver-") + liver.name + ".mesh");
     EXPECT_EQ(mesh.nodes.size(), liver.nodes);
     EXPECT_EQ(mesh.faces.size(), liver.faces);
     std::map<int, std::size_t> tets;

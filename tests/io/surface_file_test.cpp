@@ -5,15 +5,14 @@
 
 #include "sinew/base/error.h"
 #include "sinew/io/file_io.h"
+#include "tests/support/errors.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew::io {
 namespace {
 
-std::string seed(const std::string& name) {
-  std::string path(SINEW_SOURCE_DIR);
-  path += "/fuzz/corpus/surface/";
-  path += name;
-  return path;
+std::string surface_seed(const std::string& name) {
+  return test::source_path("fuzz/corpus/surface/" + name);
 }
 
 double volume(const SurfaceSoup& s) {
@@ -25,22 +24,15 @@ double volume(const SurfaceSoup& s) {
 }
 
 template <typename Parse>
-std::string message(Parse parse, std::string_view text) {
-  try {
-    parse(text, "s");
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::input);
-    EXPECT_FALSE(error.remedy().empty());
-    return error.what();
-  }
-  return "no error";
+std::string surface_error(Parse parse, std::string_view text) {
+  return test::error_of([&] { parse(text, "s"); });
 }
 
 TEST(SurfaceFile, TheSameBoxInEveryFormat) {
   for (const char* name :
        {"box.off", "box.obj", "box.stl", "box.text.stl", "box.ply", "box.bin.ply"}) {
     SCOPED_TRACE(name);
-    const SurfaceSoup box = read_surface(seed(name));
+    const SurfaceSoup box = read_surface(surface_seed(name));
     EXPECT_EQ(box.nodes.size(), 8U);
     EXPECT_EQ(box.triangles.size(), 12U);
     EXPECT_DOUBLE_EQ(volume(box), 1);
@@ -48,16 +40,16 @@ TEST(SurfaceFile, TheSameBoxInEveryFormat) {
 }
 
 TEST(SurfaceFile, WhatIsNotGeometryIsPassedOver) {
-  const SurfaceSoup colours = read_surface(seed("colours.off"));
+  const SurfaceSoup colours = read_surface(surface_seed("colours.off"));
   EXPECT_EQ(colours.nodes.size(), 4U);
   EXPECT_NEAR(volume(colours), 1.0 / 6, 1e-15);
-  const SurfaceSoup list = read_surface(seed("list-first.ply"));
+  const SurfaceSoup list = read_surface(surface_seed("list-first.ply"));
   EXPECT_EQ(list.nodes[1], Vec3(1, 0, 0));
   EXPECT_EQ(list.triangles, (std::vector<Triangle>{{0, 1, 2}}));
 }
 
 TEST(SurfaceFile, APolygonThatIsNotConvexIsSplitWithinIt) {
-  const SurfaceSoup s = read_surface(seed("polygon.obj"));
+  const SurfaceSoup s = read_surface(surface_seed("polygon.obj"));
   EXPECT_EQ(s.polygons, 2U);
   ASSERT_EQ(s.triangles.size(), 4U);
   double area = 0;
@@ -73,43 +65,44 @@ TEST(SurfaceFile, APolygonThatIsNotConvexIsSplitWithinIt) {
 }
 
 TEST(SurfaceFile, MistakesAreNamed) {
-  EXPECT_EQ(message(parse_off, "PLY"),
+  EXPECT_EQ(surface_error(parse_off, "PLY"),
             "s:1:1: expected OFF, found \"PLY\"\n"
             "  remedy: an OFF file starts with OFF, NOFF or COFF in a line of its own");
-  EXPECT_EQ(message(parse_off, "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
+  EXPECT_EQ(surface_error(parse_off, "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"),
             "s: face 1 names vertex 3; the file has vertices 0 to 2\n"
             "  remedy: correct the id, or export the surface again");
-  EXPECT_EQ(message(parse_off, "OFF 3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"),
+  EXPECT_EQ(surface_error(parse_off, "OFF 3 1 0\n0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"),
             "s: vertex 1 is (1, nan, 0); finite coordinates up to 1e50 were expected\n"
             "  remedy: correct it, or export the surface again");
-  EXPECT_NE(message(parse_off, "OFF 3000000000 1 0\n").find("cannot hold more than"),
+  EXPECT_NE(surface_error(parse_off, "OFF 3000000000 1 0\n").find("cannot hold more than"),
             std::string::npos);
-  EXPECT_EQ(message(parse_obj, "v 0 0 0\nv 1 0 0\nf 1 2\n"),
+  EXPECT_EQ(surface_error(parse_obj, "v 0 0 0\nv 1 0 0\nf 1 2\n"),
             "s: face 1 has 2 corners; at least 3 were expected\n"
             "  remedy: export the surface as triangles");
   EXPECT_EQ(
-      message(parse_obj, "v 0 0 0\nf 1 a 3\n"),
+      surface_error(parse_obj, "v 0 0 0\nf 1 a 3\n"),
       "s:2:5: expected a vertex of face 1 (an id from 1, as in 7 or 7/1/3), found \"a\"\n"
       "  remedy: a face is written: f vertex vertex vertex ...; check this entry and the count "
       "before it");
-  EXPECT_EQ(message(parse_obj, "hello\n"),
+  EXPECT_EQ(surface_error(parse_obj, "hello\n"),
             "s: has no vertices: no line starts with \"v\"\n"
             "  remedy: an OBJ file has lines \"v x y z\" and \"f a b c\"; check that it is one");
-  EXPECT_EQ(message(parse_stl, "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"),
+  EXPECT_EQ(surface_error(parse_stl, "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\n"),
             "s: ends within triangle 1\n"
             "  remedy: the file was cut short: fetch or export it again");
-  std::string cut = read_file(seed("box.stl"));
+  std::string cut = read_file(surface_seed("box.stl"));
   cut.resize(cut.size() - 60);
-  EXPECT_EQ(message(parse_stl, cut),
+  EXPECT_EQ(surface_error(parse_stl, cut),
             "s: promises 12 triangles, but its 624 bytes hold only 10\n"
             "  remedy: the file was cut short: fetch or export it again");
-  EXPECT_EQ(message(parse_ply,
-                    "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
-                    "property float y\nproperty float z\nend_header\n0 0 0\n"),
+  EXPECT_EQ(surface_error(parse_ply,
+                          "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                          "property float y\nproperty float z\nend_header\n0 0 0\n"),
             "s: has no faces: these are points or lines, not a surface\n"
             "  remedy: export the surface with its triangles");
-  EXPECT_NE(message(parse_ply, "ply\nformat binary_middle_endian 1.0\n").find("binary_big_endian"),
-            std::string::npos);
+  EXPECT_NE(
+      surface_error(parse_ply, "ply\nformat binary_middle_endian 1.0\n").find("binary_big_endian"),
+      std::string::npos);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "sinew/mesh/tet_mesh.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 
@@ -44,10 +45,7 @@ inline void expect_same_mesh(const TetMesh& a, const TetMesh& b, bool node_label
 }
 
 inline std::string mesh_data(const std::string& name) {
-  std::string path(SINEW_SOURCE_DIR);  // not by +: g++ 12 warns of that where the path is long
-  path += "/tests/data/meshes/";
-  path += name;
-  return path;
+  return test::source_path("tests/data/meshes/" + name);
 }
 
 }  // namespace sinew

@@ -12,11 +12,9 @@
 namespace sinew::live {
 namespace {
 
-constexpr Clock::time_point never = Clock::time_point::max();
-
-void frames(Simulation& s, int count) {
-  for (int i = 0; i < count; ++i) s.advance(never);
-}
+using test::finite;
+using test::frames;
+using test::never;
 
 // The surface node that lies lowest at rest.
 Index lowest(const Topology& t) {
@@ -29,13 +27,6 @@ Index lowest(const Topology& t) {
 
 Vec3 at(const Simulation& s, Index surface_node) {
   return s.state().position[uz(s.topology()->node[uz(surface_node)])];
-}
-
-bool finite(const Simulation& s) {
-  for (const Vec3& x : s.state().position) {
-    if (!x.allFinite()) return false;
-  }
-  return true;
 }
 
 TEST(Live, FramesOfASixtiethOfASecondAndTheirNumbers) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/live/simulation.h"
 #include "sinew/scene/scene.h"
 
 namespace sinew::test {
@@ -21,6 +22,19 @@ young = 2e4
 select = { side = "+y" }
 )";
   return parse_scene(text, "hanging.toml", std::filesystem::temp_directory_path(), overrides);
+}
+
+inline constexpr Clock::time_point never = Clock::time_point::max();
+
+inline void frames(live::Simulation& s, int count) {
+  for (int i = 0; i < count; ++i) s.advance(never);
+}
+
+inline bool finite(const live::Simulation& s) {
+  for (const Vec3& x : s.state().position) {
+    if (!x.allFinite()) return false;
+  }
+  return true;
 }
 
 }  // namespace sinew::test

@@ -12,22 +12,14 @@
 #include "sinew/scene/laws.h"
 #include "sinew/scene/parse.h"
 #include "tests/live/support.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew::live {
 namespace {
 
-constexpr Clock::time_point never = Clock::time_point::max();
-
-void frames(Simulation& s, int count) {
-  for (int i = 0; i < count; ++i) s.advance(never);
-}
-
-bool finite(const Simulation& s) {
-  for (const Vec3& x : s.state().position) {
-    if (!x.allFinite()) return false;
-  }
-  return true;
-}
+using test::finite;
+using test::frames;
+using test::never;
 
 TEST(Ball, PushesTheTissueAndIsPushedBack) {
   for (const char* stepper : {"verlet", "implicit"}) {
@@ -141,7 +133,7 @@ TEST(Springs, ShowAllNodes) {
 }
 
 TEST(Springs, OfAttachmentsHaveTheirAnchors) {
-  const Scene scene = load_scene(std::string(SINEW_SOURCE_DIR) + "/scenes/ligament.toml");
+  const Scene scene = load_scene(test::source_path("scenes/ligament.toml"));
   Simulation s(scene);
   s.apply(SetSprings{true});
   const Topology& t = *s.topology();
@@ -238,7 +230,7 @@ TEST(LiveSteps, AreImplicitWhereExplicitOnesCannotKeepPace) {
 }
 
 TEST(Contacts, OnTheGround) {
-  Simulation s(load_scene(std::string(SINEW_SOURCE_DIR) + "/scenes/drop.toml"));
+  Simulation s(load_scene(test::source_path("scenes/drop.toml")));
   EXPECT_TRUE(s.frame().contact.empty());
   for (int i = 0; i < 120 && s.frame().contact.empty(); ++i) frames(s, 1);
   EXPECT_FALSE(s.frame().contact.empty());
@@ -287,7 +279,7 @@ TEST(Contacts, OfBodiesWithEachOtherAndWithHardObstacles) {
 }
 
 TEST(Status, HasProbesAndObstacles) {
-  Simulation s(load_scene(std::string(SINEW_SOURCE_DIR) + "/scenes/press.toml"));
+  Simulation s(load_scene(test::source_path("scenes/press.toml")));
   ASSERT_EQ(s.parameters()->obstacles.size(), 1u);
   EXPECT_EQ(s.parameters()->obstacles[0].radius, 0.03);
   s.apply(MoveBall{Vec3(0, 1, 0), 0.01});

@@ -8,6 +8,7 @@
 #include <random>
 #include <utility>
 
+#include "sinew/mesh/quality.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/tet_mesh.h"
 
@@ -41,6 +42,10 @@ inline TetMesh joined(TetMesh mesh, const TetMesh& other, const Vec3& shift) {
     mesh.tets.push_back(tet);
   }
   return mesh;
+}
+
+inline Quality quality_of(const TetMesh& mesh) {
+  return measure_quality(mesh, build_edges(mesh.tets, mesh.node_count()));
 }
 
 // A box of up to 3 x 3 x 3 cells whose nodes are moved by less than a tenth of a cell (no tet turns

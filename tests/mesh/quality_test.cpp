@@ -18,10 +18,6 @@ std::array<Vec3, 4> corners(const TetMesh& mesh) {
   return {mesh.nodes[0], mesh.nodes[1], mesh.nodes[2], mesh.nodes[3]};
 }
 
-Quality quality_of(const TetMesh& mesh) {
-  return measure_quality(mesh, build_edges(mesh.tets, mesh.node_count()));
-}
-
 TEST(Quality, RegularTet) {
   const std::array<Vec3, 4> x = corners(testing::regular_tet());
   for (const double angle : dihedral_angles(x)) EXPECT_NEAR(angle, std::acos(1.0 / 3.0), 1e-12);
@@ -59,7 +55,7 @@ TEST(Quality, FlatTetsAreFinite) {
 }
 
 TEST(Quality, OfAMesh) {
-  const Quality quality = quality_of(beam({1, 1, 2}, {1, 1, 2}));
+  const Quality quality = testing::quality_of(beam({1, 1, 2}, {1, 1, 2}));
   EXPECT_NEAR(quality.volume, 2, 1e-14);
   EXPECT_NEAR(quality.tet_volume.min, 1.0 / 6, 1e-14);
   EXPECT_NEAR(quality.tet_volume.max, 1.0 / 3, 1e-14);
@@ -78,7 +74,7 @@ TEST(Quality, OfAMesh) {
 }
 
 TEST(Quality, OfAnEmptyMesh) {
-  const Quality quality = quality_of({});
+  const Quality quality = testing::quality_of({});
   EXPECT_EQ(quality.volume, 0);
   EXPECT_EQ(quality.dihedral_angle.max, 0);
   EXPECT_EQ(quality.edge_length.min, 0);
@@ -86,7 +82,7 @@ TEST(Quality, OfAnEmptyMesh) {
 
 RC_GTEST_PROP(Quality, BoundsHoldOnAnyMesh, ()) {
   const TetMesh mesh = testing::random_mesh();
-  const Quality quality = quality_of(mesh);
+  const Quality quality = testing::quality_of(mesh);
   const auto& histogram = quality.dihedral_histogram;
   RC_ASSERT(std::accumulate(histogram.begin(), histogram.end(), std::int64_t{0}) ==
             6 * static_cast<std::int64_t>(mesh.tets.size()));

@@ -11,28 +11,17 @@
 #include "sinew/mesh/edges.h"
 #include "sinew/mesh/quality.h"
 #include "sinew/mesh/surface.h"
+#include "tests/mesh/made_meshes.h"
 #include "tests/support/effort.h"
+#include "tests/support/errors.h"
 
 namespace sinew {
 namespace {
 
-Quality quality_of(const TetMesh& mesh) {
-  return measure_quality(mesh, build_edges(mesh.tets, mesh.node_count()));
-}
+using test::message_of;
 
 void expect_sound(const TetMesh& mesh) {
   for (const Problem& problem : diagnose(mesh).problems) ADD_FAILURE() << problem.text;
-}
-
-std::string message_of(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    EXPECT_EQ(error.kind(), ErrorKind::input);
-    EXPECT_FALSE(error.remedy().empty());
-    return error.message();
-  }
-  return "no error";
 }
 
 TEST(Beam, BenchmarkWorkloads) {
@@ -81,14 +70,14 @@ TEST(Beam, TetsOfTheFirstTwoCubes) {
 TEST(Beam, ConformsForAnyCells) {
   expect_sound(beam({0.3, 0.2, 0.5}, {3, 2, 5}));
   expect_sound(beam({0.1, 0.1, 0.1}, {1, 1, 1}));
-  EXPECT_NEAR(quality_of(beam({1, 1, 4}, {2, 2, 8})).dihedral_angle.min, 54.7356, 1e-3);
+  EXPECT_NEAR(testing::quality_of(beam({1, 1, 4}, {2, 2, 8})).dihedral_angle.min, 54.7356, 1e-3);
 }
 
 TEST(Box, FillsItsSize) {
   const TetMesh mesh = box({0.3, 0.2, 0.5}, {3, 2, 5});
   expect_sound(mesh);
   EXPECT_EQ(mesh.tet_count(), 6 * 30);
-  const Quality quality = quality_of(mesh);
+  const Quality quality = testing::quality_of(mesh);
   EXPECT_NEAR(quality.volume, 0.03, 1e-15);
   EXPECT_NEAR(quality.dihedral_angle.min, 45, 1e-9);
   EXPECT_TRUE(quality.box_min.isApprox(Vec3(-0.15, -0.1, -0.25)));
@@ -102,7 +91,7 @@ TEST(Sphere, CountsAndQuality) {
     expect_sound(mesh);
     EXPECT_EQ(mesh.tet_count(), 20 * n * n * n);
     EXPECT_EQ(mesh.nodes[0], Vec3::Zero());
-    const Quality quality = quality_of(mesh);
+    const Quality quality = testing::quality_of(mesh);
     EXPECT_GE(quality.dihedral_angle.min, 36) << n;
     EXPECT_LE(quality.dihedral_angle.max, 130) << n;
     EXPECT_GE(quality.edge_length.min, 0.9 * 0.05 / n) << n;
@@ -112,8 +101,8 @@ TEST(Sphere, CountsAndQuality) {
 
 TEST(Sphere, VolumeConvergesWithTheSquareOfTheResolution) {
   const double exact = 4.0 / 3.0 * std::numbers::pi;
-  const double error_8 = 1 - quality_of(sphere(1, 8)).volume / exact;
-  const double error_16 = 1 - quality_of(sphere(1, 16)).volume / exact;
+  const double error_8 = 1 - testing::quality_of(sphere(1, 8)).volume / exact;
+  const double error_16 = 1 - testing::quality_of(sphere(1, 16)).volume / exact;
   EXPECT_LT(error_8, 0.009);
   EXPECT_NEAR(std::log2(error_8 / error_16), 2, 0.05);
 }
@@ -121,7 +110,8 @@ TEST(Sphere, VolumeConvergesWithTheSquareOfTheResolution) {
 TEST(Ellipsoid, IsTheScaledSphere) {
   const TetMesh mesh = ellipsoid({0.03, 0.02, 0.01}, 6);
   expect_sound(mesh);
-  EXPECT_NEAR(quality_of(mesh).volume / quality_of(sphere(1, 6)).volume, 6e-6, 1e-18);
+  EXPECT_NEAR(testing::quality_of(mesh).volume / testing::quality_of(sphere(1, 6)).volume, 6e-6,
+              1e-18);
   for (const Vec3& x : mesh.nodes) {
     EXPECT_LE(x.cwiseQuotient(Vec3(0.03, 0.02, 0.01)).norm(), 1 + 1e-12);
   }
@@ -133,7 +123,7 @@ TEST(Cylinder, CountsAndQuality) {
     const TetMesh mesh = cylinder(0.05, 0.15, n);
     expect_sound(mesh);
     EXPECT_EQ(mesh.tet_count(), 18 * n * n * 3 * n);
-    const Quality quality = quality_of(mesh);
+    const Quality quality = testing::quality_of(mesh);
     EXPECT_GE(quality.dihedral_angle.min, 34) << n;
     EXPECT_LE(quality.dihedral_angle.max, 126) << n;
     EXPECT_NEAR(quality.box_max.z(), 0.075, 1e-15);
@@ -143,8 +133,8 @@ TEST(Cylinder, CountsAndQuality) {
 
 TEST(Cylinder, VolumeConvergesWithTheSquareOfTheResolution) {
   const double exact = 2 * std::numbers::pi;
-  const double error_4 = 1 - quality_of(cylinder(1, 2, 4)).volume / exact;
-  const double error_8 = 1 - quality_of(cylinder(1, 2, 8)).volume / exact;
+  const double error_4 = 1 - testing::quality_of(cylinder(1, 2, 4)).volume / exact;
+  const double error_8 = 1 - testing::quality_of(cylinder(1, 2, 8)).volume / exact;
   EXPECT_LT(error_8, 0.003);
   EXPECT_NEAR(std::log2(error_4 / error_8), 2, 0.02);
 }
@@ -164,7 +154,7 @@ TEST(HollowSphere, CountsAndQuality) {
     const auto m = static_cast<Index>(std::round(-0.95 * n / std::log(inner)));
     EXPECT_EQ(mesh.tet_count(), 60 * m * m * n);
     EXPECT_EQ(mesh.node_count(), (10 * m * m + 2) * (n + 1));
-    const Quality quality = quality_of(mesh);
+    const Quality quality = testing::quality_of(mesh);
     EXPECT_GE(quality.dihedral_angle.min, 33) << inner << ' ' << n;
     EXPECT_LE(quality.dihedral_angle.max, 122) << inner << ' ' << n;
     double least = 2, most = 0;
@@ -190,8 +180,8 @@ TEST(HollowSphere, IsClosedInsideAndOutside) {
 
 TEST(HollowSphere, VolumeConvergesWithTheSquareOfTheResolution) {
   const double exact = 4.0 / 3.0 * std::numbers::pi * (1 - 0.125);
-  const double error_4 = 1 - quality_of(hollow_sphere(1, 0.5, 4)).volume / exact;
-  const double error_8 = 1 - quality_of(hollow_sphere(1, 0.5, 8)).volume / exact;
+  const double error_4 = 1 - testing::quality_of(hollow_sphere(1, 0.5, 4)).volume / exact;
+  const double error_8 = 1 - testing::quality_of(hollow_sphere(1, 0.5, 8)).volume / exact;
   EXPECT_LT(error_4, 0.04);
   EXPECT_NEAR(std::log2(error_4 / error_8), 2, 0.4);
 }

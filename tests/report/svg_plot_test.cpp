@@ -8,12 +8,13 @@
 #include <set>
 
 #include "sinew/report/svg_frame.h"
+#include "tests/support/numbers.h"
 
 namespace sinew::report {
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::inf;
+using test::nan;
 
 // The <svg>, after checks that hold for every plot: well-formed, and no number that is none.
 class Svg {

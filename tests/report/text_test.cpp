@@ -1,4 +1,5 @@
 #include "sinew/report/text.h"
+#include "tests/support/numbers.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +8,8 @@
 namespace sinew::report {
 namespace {
 
-constexpr double inf = std::numeric_limits<double>::infinity();
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+using test::inf;
+using test::nan;
 
 TEST(Escaped, LeavesTextAndReplacesMarkup) {
   EXPECT_EQ(escaped("ν = 0.45, λ → ∞"), "ν = 0.45, λ → ∞");

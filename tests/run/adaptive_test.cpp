@@ -10,7 +10,7 @@
 namespace sinew {
 namespace {
 
-Summary run_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+Summary finished(const std::string& text, const std::vector<std::string>& overrides = {}) {
   const Scene scene =
       parse_scene(text, "adaptive.toml", std::filesystem::temp_directory_path(), overrides);
   const RunResult result = run_scene(scene, {});
@@ -43,7 +43,7 @@ const char* there_and_back =
     "[{ time = 0.15, move = [0.2, 0, 0] }, { time = 0.25, move = [0.2, 0, 0] }, { time = 0.4 }]";
 
 TEST(Adaptive, TheStepGrowsAgainWhenTheBodySoftens) {
-  const Summary s = run_of(pulled(there_and_back));
+  const Summary s = finished(pulled(there_and_back));
   EXPECT_GT(s.step_reductions, 0);
   EXPECT_GT(s.step_increases, 0);
   EXPECT_GT(s.dt, 1.2 * s.stable_step);  // the last step is far above the shortest stable one
@@ -52,9 +52,9 @@ TEST(Adaptive, TheStepGrowsAgainWhenTheBodySoftens) {
 
 // A given step that is stable at rest and not when stretched is divided, and comes back.
 TEST(Adaptive, AGivenStepIsDividedWhileItIsTooLong) {
-  const Summary free = run_of(pulled(there_and_back));
+  const Summary free = finished(pulled(there_and_back));
   const std::string dt = "dt=" + std::to_string(1.25 * free.stable_step);
-  const Summary s = run_of(pulled(there_and_back), {dt});
+  const Summary s = finished(pulled(there_and_back), {dt});
   EXPECT_GT(s.step_reductions, 0);
   EXPECT_GT(s.step_increases, 0);
   EXPECT_NEAR(s.dt, 1.25 * free.stable_step, 1e-6);  // the given one again
@@ -70,7 +70,7 @@ TEST(Adaptive, AJerkToTwiceTheLengthStaysFinite) {
                            "[{ time = 0.3 }, { time = 0.4, move = [0.1, 0, 0] }]"}) {
     for (const char* law : {"lloyd", "neo-hookean"}) {
       const Summary s =
-          run_of(pulled(jerk), {std::string("bar.law=") + law, "bar.damping_ratio=0.1"});
+          finished(pulled(jerk), {std::string("bar.law=") + law, "bar.damping_ratio=0.1"});
       EXPECT_LT(s.peak_stretch, 5.0) << law << jerk;
       EXPECT_LT(s.energy.kinetic, 1.0) << law << jerk;
     }
@@ -83,14 +83,14 @@ TEST(Adaptive, ABodyPressedFlatStaysFinite) {
       "{ time = 0.25 }]";
   for (const char* law : {"lloyd", "neo-hookean"}) {
     const Summary s =
-        run_of(pulled(press), {std::string("bar.law=") + law, "bar.damping_ratio=0.1"});
+        finished(pulled(press), {std::string("bar.law=") + law, "bar.damping_ratio=0.1"});
     EXPECT_LT(s.energy.kinetic, 1.0) << law;
   }
 }
 
 TEST(Adaptive, TheMostInvertedTetsOfAnyFrameAreCounted) {
-  const Summary s = run_of(pulled("[{ time = 0.6 }]"),
-                           {"bar.start=inverted", "bar.poisson=0.3", "bar.damping_ratio=0.1"});
+  const Summary s = finished(pulled("[{ time = 0.6 }]"),
+                             {"bar.start=inverted", "bar.poisson=0.3", "bar.damping_ratio=0.1"});
   EXPECT_GT(s.peak_inverted_tets, 150);  // frame 0
   EXPECT_EQ(s.inverted_tets, 0);
   EXPECT_GT(s.righting_steps, 0);

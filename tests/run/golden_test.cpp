@@ -11,11 +11,12 @@
 #include "sinew/base/parallel.h"
 #include "sinew/run/run.h"
 #include "tests/support/effort.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
 
-const std::string golden_file = SINEW_SOURCE_DIR "/tests/golden/hashes.txt";
+const std::string golden_file = test::source_path("tests/golden/hashes.txt");
 
 // Scene (a file in scenes/) and how long of it; together they use every law, limits, ground,
 // moving pins, loads, obstacles, attachments, several bodies, regions, fixed and automatic steps.
@@ -45,7 +46,7 @@ TEST_P(Golden, SameBitsAsRecordedAtOneAndTwoThreads) {
   const auto& [file, precision] = GetParam();
   const std::string name = file + ":" + precision;
   const Scene scene =
-      load_scene(SINEW_SOURCE_DIR "/scenes/" + file + ".toml",
+      load_scene(test::source_path("scenes/") + file + ".toml",
                  {"duration=" + std::to_string(test::effort(golden_scenes.at(file))),
                   "precision=" + precision});
   std::vector<std::string> hashes;

@@ -28,7 +28,7 @@ path = [{ time = 0.1, move = [0.02, 0, -0.09], turn = [0, 0, 60] }]
 select = { nearest = [0, 0, 0.1] }
 )";
 
-Summary run_of(const std::vector<std::string>& overrides) {
+Summary run_block(const std::vector<std::string>& overrides) {
   const RunResult result = run_scene(parse_scene(block, "block.toml", ".", overrides), {});
   EXPECT_EQ(result.status, RunStatus::finished);
   return result.summary;
@@ -36,8 +36,8 @@ Summary run_of(const std::vector<std::string>& overrides) {
 
 TEST(Precision, SingleFollowsDouble) {
   for (const char* law : {"block.law=neo-hookean", "block.law=lloyd"}) {
-    const Summary one = run_of({law, "precision=single"});
-    const Summary two = run_of({law, "precision=double"});
+    const Summary one = run_block({law, "precision=single"});
+    const Summary two = run_block({law, "precision=double"});
     EXPECT_EQ(one.precision, "single");
     EXPECT_EQ(two.precision, "double");
     const Vec3 way = two.probes[0].displacement;
@@ -49,21 +49,22 @@ TEST(Precision, SingleFollowsDouble) {
 TEST(Precision, SingleIsTheSameBitsOnAnyNumberOfThreads) {
   const auto hash = [](int threads) {
     const ThreadLimit limit(threads);
-    return run_of({"precision=single", "duration=0.1"}).state_hash;
+    return run_block({"precision=single", "duration=0.1"}).state_hash;
   };
   EXPECT_EQ(hash(1), hash(2));
 }
 
 TEST(Precision, SingleRightsATangledBody) {
-  const Summary one = run_of({"precision=single", "block.start=inverted"});
-  const Summary two = run_of({"precision=double", "block.start=inverted"});
+  const Summary one = run_block({"precision=single", "block.start=inverted"});
+  const Summary two = run_block({"precision=double", "block.start=inverted"});
   EXPECT_GT(one.righting_steps, 0);
   EXPECT_EQ(one.righting_steps, two.righting_steps);
   EXPECT_EQ(one.inverted_tets, two.inverted_tets);
 }
 
 TEST(Precision, ImplicitStepsStayInDouble) {
-  EXPECT_EQ(run_of({"precision=single", "stepper=implicit", "duration=0.05"}).precision, "double");
+  EXPECT_EQ(run_block({"precision=single", "stepper=implicit", "duration=0.05"}).precision,
+            "double");
 }
 
 }  // namespace

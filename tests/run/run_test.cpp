@@ -35,7 +35,7 @@ select = { side = "+y" }
 select = { side = "-y" }
 )";
 
-Scene scene_of(const std::string& text, const std::vector<std::string>& overrides = {}) {
+Scene hanging_scene(const std::string& text, const std::vector<std::string>& overrides = {}) {
   return parse_scene(text, "hanging.toml", fs::temp_directory_path(), overrides);
 }
 
@@ -64,7 +64,7 @@ class Run : public testing::Test {
 };
 
 TEST_F(Run, WritesEverythingItPromises) {
-  const RunResult result = run_scene(scene_of(hanging_box), into_folder());
+  const RunResult result = run_scene(hanging_scene(hanging_box), into_folder());
   EXPECT_EQ(result.status, RunStatus::finished);
   EXPECT_EQ(exit_code(result), 0);
   for (const char* name :
@@ -91,12 +91,12 @@ TEST_F(Run, WritesEverythingItPromises) {
 }
 
 TEST_F(Run, TheLastFrameIsTheState) {
-  const RunResult result = run_scene(scene_of(hanging_box), into_folder());
+  const RunResult result = run_scene(hanging_scene(hanging_box), into_folder());
   const TetMesh frame = io::parse_vtu(io::read_file(folder_ / "frames/hanging_0006.vtu"), "frame");
   ASSERT_EQ(frame.node_count(), 64);
   Vec3 mean = Vec3::Zero();
   int count = 0;
-  const Model model = build_model(scene_of(hanging_box));
+  const Model model = build_model(hanging_scene(hanging_box));
   for (Index i = 0; i < 64; ++i) {
     if (model.rest_position[uz(i)].y() > -0.05 + 1e-9) continue;
     mean += frame.nodes[uz(i)];
@@ -106,7 +106,7 @@ TEST_F(Run, TheLastFrameIsTheState) {
 }
 
 TEST_F(Run, ResumeAfterAStopEndsWithTheSameBits) {
-  const Scene scene = scene_of(hanging_box);
+  const Scene scene = hanging_scene(hanging_box);
   const RunResult whole = run_scene(scene, {});
   for (const int stop_after : {0, 1, 3}) {
     fs::remove_all(folder_);
@@ -129,7 +129,7 @@ TEST_F(Run, ResumeAfterAStopEndsWithTheSameBits) {
 
 // What the ground and the limits push with goes from step to step, and so into the checkpoint.
 TEST_F(Run, ImplicitStepsOnTheGroundResumeToTheSameBits) {
-  const Scene scene = scene_of(R"(
+  const Scene scene = hanging_scene(R"(
 stepper = "implicit"
 duration = 0.2
 [output]
@@ -165,7 +165,7 @@ volume_limit = 0.01
 }
 
 TEST_F(Run, ResumingAFinishedRunChangesNothing) {
-  const RunResult whole = run_scene(scene_of(hanging_box), into_folder());
+  const RunResult whole = run_scene(hanging_scene(hanging_box), into_folder());
   const std::vector<std::string> rows = lines("energy.csv");
   const RunResult again = resume_run(folder_, {});
   EXPECT_EQ(again.summary.state_hash, whole.summary.state_hash);
@@ -177,7 +177,7 @@ TEST_F(Run, RowsWrittenAfterTheCheckpointAreDropped) {
   RunOptions options = into_folder();
   options.stop = &stop;
   options.on_progress = [&](const Progress& p) { stop = p.frame == 2; };
-  run_scene(scene_of(hanging_box), options);
+  run_scene(hanging_scene(hanging_box), options);
   std::ofstream(folder_ / "probes.csv", std::ios::app) << "0.1,9,9\n0.13,tor";  // a killed run's
   resume_run(folder_, {});
   const std::vector<std::string> rows = lines("probes.csv");
@@ -186,17 +186,18 @@ TEST_F(Run, RowsWrittenAfterTheCheckpointAreDropped) {
 }
 
 TEST_F(Run, AFolderWithARunIsNotOverwrittenUnasked) {
-  run_scene(scene_of(hanging_box), into_folder());
-  EXPECT_THROW(run_scene(scene_of(hanging_box), into_folder()), Error);
+  run_scene(hanging_scene(hanging_box), into_folder());
+  EXPECT_THROW(run_scene(hanging_scene(hanging_box), into_folder()), Error);
   RunOptions force = into_folder();
   force.force = true;
-  EXPECT_EQ(run_scene(scene_of(hanging_box, {"duration=0.1"}), force).status, RunStatus::finished);
+  EXPECT_EQ(run_scene(hanging_scene(hanging_box, {"duration=0.1"}), force).status,
+            RunStatus::finished);
   EXPECT_FALSE(fs::exists(folder_ / "frames/hanging_0006.vtu"));
 }
 
 TEST_F(Run, AGivenStepAboveTheStableOneIsRefusedWithTheRemedies) {
   try {
-    run_scene(scene_of(hanging_box, {"dt=0.02", "box.law=lloyd"}), {});
+    run_scene(hanging_scene(hanging_box, {"dt=0.02", "box.law=lloyd"}), {});
     FAIL();
   } catch (const Error& e) {
     EXPECT_EQ(e.kind(), ErrorKind::unstable);
@@ -213,20 +214,20 @@ TEST_F(Run, AGivenStepAboveTheStableOneIsRefusedWithTheRemedies) {
 TEST_F(Run, TheSubstepsOfTheRefusalAreEnough) {
   std::string substeps;
   try {
-    run_scene(scene_of(hanging_box, {"dt=0.02"}), {});
+    run_scene(hanging_scene(hanging_box, {"dt=0.02"}), {});
   } catch (const Error& e) {
     const std::size_t at = e.remedy().find("substeps = ") + 11;
     substeps = e.remedy().substr(at, e.remedy().find(')', at) - at);
   }
   const RunResult result =
-      run_scene(scene_of(hanging_box, {"dt=0.02", "substeps=" + substeps}), {});
+      run_scene(hanging_scene(hanging_box, {"dt=0.02", "substeps=" + substeps}), {});
   EXPECT_EQ(result.status, RunStatus::finished);
   EXPECT_NEAR(result.summary.sim_seconds, 0.2, 1e-9);
 }
 
 TEST_F(Run, AnUnstableRunThatIsAllowedStopsAndKeepsItsLastGoodCheckpoint) {
   const RunResult result = run_scene(
-      scene_of(hanging_box, {"dt=0.02", "allow_unstable=true", "duration=20"}), into_folder());
+      hanging_scene(hanging_box, {"dt=0.02", "allow_unstable=true", "duration=20"}), into_folder());
   EXPECT_EQ(result.status, RunStatus::diverged);
   EXPECT_EQ(exit_code(result), 5);
   ASSERT_TRUE(result.error.has_value());
@@ -255,18 +256,19 @@ select = { side = "-x" }
 select = { side = "+x" }
 path = [{ time = 1, move = [1.0, 0, 0] }]
 )";
-  const RunResult result = run_scene(scene_of(pulled), {});
+  const RunResult result = run_scene(hanging_scene(pulled), {});
   EXPECT_EQ(result.status, RunStatus::finished);
   EXPECT_GT(result.summary.step_reductions, 0);
   EXPECT_LT(result.summary.max_stretch, 40.0);
 }
 
 TEST_F(Run, CheckpointsOfOtherModelsAndDamagedOnesAreRefused) {
-  run_scene(scene_of(hanging_box), into_folder());
+  run_scene(hanging_scene(hanging_box), into_folder());
   const fs::path file = folder_ / "checkpoint.bin";
-  const Model model = build_model(scene_of(hanging_box));
+  const Model model = build_model(hanging_scene(hanging_box));
   EXPECT_NO_THROW(read_checkpoint(file, model));
-  EXPECT_THROW(read_checkpoint(file, build_model(scene_of(hanging_box, {"box.young=3e4"}))), Error);
+  EXPECT_THROW(read_checkpoint(file, build_model(hanging_scene(hanging_box, {"box.young=3e4"}))),
+               Error);
   const std::string whole = io::read_file(file);
   for (std::size_t cut = 0; cut < whole.size(); cut += 97) {
     if (cut > 0) {

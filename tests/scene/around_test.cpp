@@ -6,13 +6,13 @@
 
 #include "sinew/base/error.h"
 #include "sinew/scene/build.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
 
 TEST(SceneAround, AMeshHangsFromItsTop) {
-  const std::filesystem::path mesh =
-      std::filesystem::path(SINEW_SOURCE_DIR) / "scenes/meshes/liver-10mm.mesh";
+  const std::filesystem::path mesh = test::source_path("scenes/meshes/liver-10mm.mesh");
   const Scene scene = load_scene_or_mesh(mesh, {"liver-10mm.young=2e4"});
   ASSERT_EQ(scene.bodies.size(), 1u);
   EXPECT_EQ(scene.bodies[0].name, "liver-10mm");
@@ -24,7 +24,7 @@ TEST(SceneAround, AMeshHangsFromItsTop) {
 }
 
 TEST(SceneAround, OtherFilesAreScenes) {
-  const std::filesystem::path scenes = std::filesystem::path(SINEW_SOURCE_DIR) / "scenes";
+  const std::filesystem::path scenes = test::source_path("scenes");
   EXPECT_EQ(load_scene_or_mesh(scenes / "beam.toml").name, "beam");
   EXPECT_THROW(load_scene_or_mesh(scenes / "missing.vtu"), Error);
   EXPECT_THROW(load_scene_or_mesh(scenes / "missing.toml"), Error);

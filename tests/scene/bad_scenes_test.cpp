@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/scene/support.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
@@ -328,7 +329,7 @@ TEST(BadScenes, AreBadInput) {
 TEST(BadScenes, FuzzSeedsEndInAnErrorOrAScene) {
   int files = 0;
   for (const auto& entry :
-       std::filesystem::directory_iterator(SINEW_SOURCE_DIR "/fuzz/corpus/scene")) {
+       std::filesystem::directory_iterator(test::source_path("fuzz/corpus/scene"))) {
     std::ostringstream text;
     text << std::ifstream(entry.path(), std::ios::binary).rdbuf();
     EXPECT_NO_THROW(test::parse_error(text.str())) << entry.path();

@@ -9,41 +9,21 @@
 
 #include "sinew/model/state.h"
 #include "tests/scene/support.h"
+#include "tests/support/folder.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
 
+using test::build;
 using test::build_error;
 using test::error_of;
+using test::Folder;
 using test::parse;
-
-Model build(std::string_view text, const std::vector<std::string>& overrides = {}) {
-  return build_model(parse(text, overrides));
-}
 
 double sum(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
-
-// A folder that goes with the test.
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("sinew_" +
-               std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
-               std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-  }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 // Node 0 (from 0) is in no tet, tet 1 (label 7) is turned inside out, face label 5.
 constexpr const char* kMesh = R"(MeshVersionFormatted 1
@@ -67,7 +47,7 @@ End
 )";
 
 TEST(Build, BeamIsTheWorkload) {
-  const Scene scene = load_scene(SINEW_SOURCE_DIR "/scenes/beam.toml");
+  const Scene scene = load_scene(test::source_path("scenes/beam.toml"));
   BuildReport report;
   const Model m = build_model(scene, &report);
   EXPECT_EQ(m.node_count(), 5 * 5 * 17);
@@ -102,7 +82,7 @@ TEST(Build, BeamIsTheWorkload) {
 }
 
 TEST(Build, BeamScalesByOverrides) {
-  const Scene scene = load_scene(SINEW_SOURCE_DIR "/scenes/beam.toml",
+  const Scene scene = load_scene(test::source_path("scenes/beam.toml"),
                                  {"beam.cells=[8,8,32]", "beam.young=1.5e6", "beam.law=uniform"});
   const Model m = build_model(scene);
   EXPECT_EQ(m.tet_count(), 10240);

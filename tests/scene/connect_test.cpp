@@ -14,13 +14,10 @@
 namespace sinew {
 namespace {
 
+using test::build;
 using test::build_error;
 using test::parse;
 using test::parse_error;
-
-Model build(std::string_view text, const std::vector<std::string>& overrides = {}) {
-  return build_model(parse(text, overrides));
-}
 
 TEST(NearestNode, IsTheOneOfASearchThroughAll) {
   std::vector<Vec3> x;

@@ -9,6 +9,7 @@
 #include "sinew/io/file_io.h"
 #include "sinew/scene/framework_text.h"
 #include "tests/scene/support.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using test::error_of;
 
-const fs::path kFolder = fs::path(SINEW_SOURCE_DIR) / "tests" / "data" / "framework";
+const fs::path kFolder = test::source_path("tests/data/framework");
 
 Scene read(std::string_view scene, const FrameworkOptions& options = {},
            std::string_view constraints = {}, const std::vector<std::string>& overrides = {}) {
@@ -168,13 +169,13 @@ TEST(Framework, RestitutionMayBeGiven) {
                   "--restitution: 'restitution' in [ground] is 2"));
 }
 
-struct Bad {
+struct BadFile {
   const char* scene;
   const char* message;
 };
 
 TEST(Framework, MistakesNameThePlaceAndWhatWasExpected) {
-  for (const Bad& bad : std::vector<Bad>{
+  for (const BadFile& bad : std::vector<BadFile>{
            {"x", "x-scene.txt:1:1: expected the number of objects (a whole number), found \"x\""},
            {"0\n", "x-scene.txt:1:1: the scene has no objects"},
            {"-1\n", "the number of objects is -1; expected 0 to 1000000"},
@@ -210,7 +211,7 @@ TEST(Framework, MistakesNameThePlaceAndWhatWasExpected) {
 
 TEST(Framework, MistakesInConstraintsNameThePlace) {
   const char* scene = "1\nblock.mesh 1 1e5 0.3 0 0 9 0 1 0 0 0\n";
-  for (const Bad& bad : std::vector<Bad>{
+  for (const BadFile& bad : std::vector<BadFile>{
            {"a", "x-constraints.txt:1:1: expected the number of constraints (a whole number)"},
            {"1\n1 0 2 0\n", "x-constraints.txt:2:5: mesh 2 of constraint 1 is 2; expected 0 to 1"},
            {"1\n1 0 0 8\n",
@@ -246,12 +247,10 @@ TEST(Framework, IsKnownByItsFirstWord) {
   EXPECT_FALSE(is_framework_scene("a.txt", ""));
   FrameworkOptions options;
   options.young = 1.0;
-  EXPECT_TRUE(has(error_of([&] {
-                    load_framework_scene(fs::path(SINEW_SOURCE_DIR) / "scenes" / "beam.toml",
-                                         options);
-                  }),
-                  "--constraints, --young, --poisson and --restitution go with a scene of the "
-                  "course framework"));
+  EXPECT_TRUE(
+      has(error_of([&] { load_framework_scene(test::source_path("scenes/beam.toml"), options); }),
+          "--constraints, --young, --poisson and --restitution go with a scene of the "
+          "course framework"));
   options.constraints = "none.txt";
   EXPECT_TRUE(has(error_of([&] { load_framework_scene(kFolder / "three-scene.txt", options); }),
                   "none.txt: there is no such constraints file"));
@@ -268,8 +267,7 @@ TEST(Framework, NumbersAreReadAsStreamsDo) {
 
 TEST(Framework, EverySeedIsRefusedOrReadsBack) {
   int files = 0;
-  for (const auto& entry :
-       fs::directory_iterator(fs::path(SINEW_SOURCE_DIR) / "fuzz" / "corpus" / "framework")) {
+  for (const auto& entry : fs::directory_iterator(test::source_path("fuzz/corpus/framework"))) {
     SCOPED_TRACE(entry.path().string());
     const std::string text = io::read_file(entry.path());
     try {

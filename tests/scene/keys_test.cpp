@@ -10,12 +10,13 @@
 #include "sinew/model/material.h"
 #include "sinew/scene/scene.h"
 #include "tests/scene/support.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
 
 std::string scene_format() {
-  std::ifstream in(SINEW_SOURCE_DIR "/docs/scene-format.md");
+  std::ifstream in(test::source_path("docs/scene-format.md"));
   std::ostringstream text;
   text << in.rdbuf();
   return text.str();

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "tests/scene/support.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
@@ -180,10 +181,10 @@ TEST(Parse, NamesTheSceneByItsFile) {
 }
 
 TEST(Load, StartsMeshPathsFromTheScenesFolder) {
-  const Scene s = load_scene(SINEW_SOURCE_DIR "/scenes/beam.toml");
-  EXPECT_EQ(s.base, SINEW_SOURCE_DIR "/scenes");
+  const Scene s = load_scene(test::source_path("scenes/beam.toml"));
+  EXPECT_EQ(s.base, test::source_path("scenes"));
   EXPECT_EQ(s.name, "beam");
-  EXPECT_EQ(s.file, SINEW_SOURCE_DIR "/scenes/beam.toml");
+  EXPECT_EQ(s.file, test::source_path("scenes/beam.toml"));
 }
 
 TEST(Load, NamesWhatItCannotRead) {

@@ -7,34 +7,16 @@
 
 #include "sinew/scene/build.h"
 #include "tests/scene/support.h"
+#include "tests/support/folder.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
 
+using test::build;
 using test::build_error;
+using test::Folder;
 using test::parse;
-
-Model build(const std::string& text) {
-  return build_model(parse(text, {}));
-}
-
-// A folder that goes with the test.
-class Folder {
- public:
-  Folder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("sinew_rigid_mesh" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  ~Folder() { std::filesystem::remove_all(path_); }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(path_ / name) << text;
-    return (path_ / name).string();
-  }
-
- private:
-  std::filesystem::path path_;
-};
 
 TEST(RigidMesh, IsReadPlacedAndGivenToTheModel) {
   const Folder folder;
@@ -79,7 +61,7 @@ TEST(RigidMesh, IsReadPlacedAndGivenToTheModel) {
 
 TEST(RigidMesh, TheBowlIsClosed) {
   const Model m = build("[body.b]\nshape = \"box\"\ncells = [2, 2, 2]\n[obstacle.bowl]\nmesh = \"" +
-                        std::string(SINEW_SOURCE_DIR) + "/scenes/meshes/bowl.off\"\n");
+                        test::source_path("scenes/meshes/bowl.off") + "\"\n");
   double volume = 0.0;
   for (const Triangle& t : m.obstacles[0].triangles)
     volume +=

@@ -9,13 +9,14 @@
 #include "sinew/solver/verlet.h"
 #include "tests/scene/support.h"
 #include "tests/support/effort.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
 
 std::vector<std::filesystem::path> scene_files() {
   std::vector<std::filesystem::path> files;
-  for (const auto& entry : std::filesystem::directory_iterator(SINEW_SOURCE_DIR "/scenes"))
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_path("scenes")))
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
@@ -66,7 +67,7 @@ State run_to(double time, const Scene& scene, const Model& model) {
 }
 
 Scene shipped(const std::string& name) {
-  return load_scene(std::string(SINEW_SOURCE_DIR) + "/scenes/" + name);
+  return load_scene(test::source_path("scenes/") + name);
 }
 
 double largest_stretch(const Model& model, const State& state) {

@@ -7,22 +7,17 @@
 
 #include "sinew/scene/build.h"
 #include "sinew/scene/scene.h"
+#include "tests/support/errors.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew::test {
 
 inline Scene parse(std::string_view text, const std::vector<std::string>& overrides = {}) {
-  return parse_scene(text, "scene.toml", SINEW_SOURCE_DIR "/scenes", overrides);
+  return parse_scene(text, "scene.toml", source_path("scenes"), overrides);
 }
 
-// what() of the error that `act` ends with; empty without one.
-template <typename Act>
-std::string error_of(Act act) {
-  try {
-    act();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return {};
+inline Model build(std::string_view text, const std::vector<std::string>& overrides = {}) {
+  return build_model(parse(text, overrides));
 }
 
 inline std::string parse_error(std::string_view text,

@@ -11,6 +11,7 @@
 #include "sinew/server/protocol.h"
 #include "tests/live/support.h"
 #include "tests/server/client.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew::server {
 namespace {
@@ -273,7 +274,7 @@ std::string give(unsigned short port, const std::string& query, const std::strin
 TEST_F(ServerTest, ScenesOfTheGalleryAreOpened) {
   stop();
   Options options;
-  options.scenes = std::string(SINEW_SOURCE_DIR) + "/scenes";
+  options.scenes = test::source_path("scenes");
   start(options);
   const std::string list = Client(port()).get("/gallery.json");
   const auto scenes = nlohmann::json::parse(list.substr(list.find("\r\n\r\n") + 4));

@@ -13,6 +13,7 @@
 #include "sinew/scene/build.h"
 #include "sinew/sim/checkpoint.h"
 #include "sinew/sim/stepping.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
@@ -57,7 +58,7 @@ struct Trial {
   Stepping stepping;
 };
 
-Scene scene_of(const std::string& text) {
+Scene contact_scene(const std::string& text) {
   return parse_scene(text, "contact.toml", ".");
 }
 
@@ -74,7 +75,7 @@ TEST(Contact, TenCubesStandOnEachOther) {
 #else
   const std::string duration = "duration=0.5";
 #endif
-  Trial r(load_scene(SINEW_SOURCE_DIR "/scenes/stack.toml", {duration}));
+  Trial r(load_scene(test::source_path("scenes/stack.toml"), {duration}));
   std::vector<Vec3> before;
   for (std::size_t b = 0; b < 10; ++b) before.push_back(r.center(b));
   r.to_the_end();
@@ -91,11 +92,11 @@ TEST(Contact, TenCubesStandOnEachOther) {
 // Free flight: what one body loses the other gets, and nothing comes from nowhere.
 TEST(Contact, BodiesThatCollideKeepTheirMomentum) {
   for (const std::string stepper : {"verlet", "implicit"}) {
-    Trial r(scene_of("duration = 0.05\ngravity = [0, 0, 0]\nstepper = \"" + stepper +
-                     "\"\n[contact]\n" + cube("a", "velocity = [1, 0, 0]") +
-                     cube("b",
-                          "position = [0.025, 0.004, 0.003]\nvelocity = [-2, 0, 0]\n"
-                          "spin = [0, 20, 10]")));
+    Trial r(contact_scene("duration = 0.05\ngravity = [0, 0, 0]\nstepper = \"" + stepper +
+                          "\"\n[contact]\n" + cube("a", "velocity = [1, 0, 0]") +
+                          cube("b",
+                               "position = [0.025, 0.004, 0.003]\nvelocity = [-2, 0, 0]\n"
+                               "spin = [0, 20, 10]")));
     const Vec3 before = r.momentum();
     const double energy = r.energy();
     r.to_the_end();
@@ -113,11 +114,11 @@ TEST(Contact, BodiesThatCollideKeepTheirMomentum) {
 double way_down(double angle, double friction, const std::string& body) {
   const double s = std::sin(angle);
   const double c = std::cos(angle);
-  Trial r(scene_of("duration = 0.4\n[ground]\nnormal = [" + std::to_string(s) + ", " +
-                   std::to_string(c) + ", 0]\nfriction = " + std::to_string(friction) + "\n" +
-                   body + "position = [" + std::to_string(s * 0.03) + ", " +
-                   std::to_string(c * 0.03) +
-                   ", 0]\nyoung = 3e5\npoisson = 0.45\ndamping_ratio = 0.02\n"));
+  Trial r(contact_scene("duration = 0.4\n[ground]\nnormal = [" + std::to_string(s) + ", " +
+                        std::to_string(c) + ", 0]\nfriction = " + std::to_string(friction) + "\n" +
+                        body + "position = [" + std::to_string(s * 0.03) + ", " +
+                        std::to_string(c * 0.03) +
+                        ", 0]\nyoung = 3e5\npoisson = 0.45\ndamping_ratio = 0.02\n"));
   const Vec3 before = r.center(0);
   r.to_the_end();
   return (r.center(0) - before).norm();
@@ -137,7 +138,7 @@ TEST(Contact, BallsRollAndSlideAsCoulombSays) {
 }
 
 TEST(Contact, AFastBallDoesNotTunnelThroughAMembrane) {
-  Trial r(scene_of(R"(duration = 0.004
+  Trial r(contact_scene(R"(duration = 0.004
 gravity = [0, 0, 0]
 [output]
 fps = 1000
@@ -171,11 +172,11 @@ poisson = 0.4
 TEST(Contact, ImplicitAndExplicitStepsComeToTheSameRest) {
   std::vector<double> height;
   for (const std::string stepper : {"verlet", "implicit"}) {
-    Trial r(scene_of("duration = 0.6\nstepper = \"" + stepper + "\"\n[ground]\n[contact]\n" +
-                     cube("a", "position = [0, 0.01, 0]\ndamping_ratio = 0.5") +
-                     cube("b",
-                          "position = [0, 0.03, 0]\nrotation = [0, 20, 0]\n"
-                          "damping_ratio = 0.5")));
+    Trial r(contact_scene("duration = 0.6\nstepper = \"" + stepper + "\"\n[ground]\n[contact]\n" +
+                          cube("a", "position = [0, 0.01, 0]\ndamping_ratio = 0.5") +
+                          cube("b",
+                               "position = [0, 0.03, 0]\nrotation = [0, 20, 0]\n"
+                               "damping_ratio = 0.5")));
     r.to_the_end();
     height.push_back(r.center(1).y());
     EXPECT_LT(r.velocity(1).norm(), 1e-3) << stepper;
@@ -186,11 +187,11 @@ TEST(Contact, ImplicitAndExplicitStepsComeToTheSameRest) {
 
 // Contacts begin with what they pushed with in the step before: that is in the checkpoint too.
 TEST(Contact, ARunThatIsCutGoesOnToTheSameBits) {
-  const Scene scene =
-      scene_of("duration = 0.1\n[ground]\n[contact]\n" + cube("a", "position = [0, 0.0101, 0]") +
-               cube("b", "position = [0.003, 0.0302, 0]\nrotation = [0, 20, 0]") +
-               "[obstacle.wall]\nshape = \"box\"\ncenter = [0.023, 0.03, 0]\n"
-               "size = [0.02, 0.03, 0.04]\n");
+  const Scene scene = contact_scene(
+      "duration = 0.1\n[ground]\n[contact]\n" + cube("a", "position = [0, 0.0101, 0]") +
+      cube("b", "position = [0.003, 0.0302, 0]\nrotation = [0, 20, 0]") +
+      "[obstacle.wall]\nshape = \"box\"\ncenter = [0.023, 0.03, 0]\n"
+      "size = [0.02, 0.03, 0.04]\n");
   Trial whole(scene);
   std::vector<std::uint64_t> hashes;
   for (const int threads : {1, 2}) {
@@ -214,9 +215,9 @@ TEST(Contact, ARunThatIsCutGoesOnToTheSameBits) {
 
 // What rests has no kinetic energy: the velocity of a whole step knows the contacts' forces.
 TEST(Contact, WhatLiesStillHasNoKineticEnergy) {
-  Trial r(scene_of("duration = 1\n[ground]\n[contact]\n" +
-                   cube("a", "position = [0, 0.01, 0]\ndamping_ratio = 0.5") +
-                   cube("b", "position = [0, 0.03, 0]\ndamping_ratio = 0.5")));
+  Trial r(contact_scene("duration = 1\n[ground]\n[contact]\n" +
+                        cube("a", "position = [0, 0.01, 0]\ndamping_ratio = 0.5") +
+                        cube("b", "position = [0, 0.03, 0]\ndamping_ratio = 0.5")));
   r.to_the_end();
   const Energies e = measure_energies(r.model, r.run.state, r.stepping.workspace());
   EXPECT_LT(e.kinetic, 1e-3 * e.elastic);

@@ -17,6 +17,7 @@
 namespace sinew {
 namespace {
 
+using test::oscillator;
 using test::point_masses;
 using test::tissue_box;
 
@@ -28,14 +29,6 @@ State run(const Model& m, double h, int steps, const ImplicitOptions& options) {
 }
 State run(const Model& m, double h, int steps, Scheme scheme) {
   return run(m, h, steps, {.scheme = scheme});
-}
-
-// 2 kg on a spring of 50 N/m that is at rest at 1 m: omega = 5 rad/s. Starts stretched by 0.1 m.
-Model oscillator(double damping = 0.0) {
-  Model m = point_masses({{Vec3(0, 0, 0), 0.0}, {Vec3(1.1, 0, 0), 2.0}});
-  add_attachment(m, 0, 1, 50.0, damping, 1.0);
-  finish(m);
-  return m;
 }
 
 TEST(Implicit, BackwardEulerShrinksASwingByItsFactor) {

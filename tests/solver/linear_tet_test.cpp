@@ -10,6 +10,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/solver/static.h"
 #include "tests/support/models.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
@@ -133,7 +134,7 @@ std::istringstream data_line(std::istream& in) {
 }
 
 TEST(LinearTet, SmallStrainsAreThoseOfC3D4) {
-  std::ifstream in(SINEW_SOURCE_DIR "/tests/data/c3d4.txt");  // tools/referee_c3d4.py
+  std::ifstream in(test::source_path("tests/data/c3d4.txt"));  // tools/referee_c3d4.py
   ASSERT_TRUE(in);
   double young = 0.0, poisson = 0.0;
   std::size_t nodes = 0, tets = 0;

@@ -12,19 +12,12 @@
 namespace sinew {
 namespace {
 
+using test::oscillator;
 using test::point_masses;
 using test::tissue_box;
 
-// One free mass of 2 kg on a spring of 50 N/m: omega = 5 rad/s.
-Model oscillator(double c) {
-  Model m = point_masses({{Vec3(0, 0, 0), 0.0}, {Vec3(1, 0, 0), 2.0}});
-  add_attachment(m, 0, 1, 50.0, c, 1.0);
-  finish(m);
-  return m;
-}
-
 TEST(StableStep, UndampedOscillatorByHand) {
-  const Model m = oscillator(0.0);
+  const Model m = oscillator(0.0, 1.0);
   Workspace w(m);
   const StableStep s = find_stable_step(m, m.rest_position, w);
   EXPECT_NEAR(s.step, 2.0 / 5.0, 1e-10);
@@ -34,7 +27,7 @@ TEST(StableStep, UndampedOscillatorByHand) {
 
 TEST(StableStep, DampedOscillatorFollowsTheFormula) {
   for (const double zeta : {0.1, 0.5, 1.0, 3.0}) {
-    const Model m = oscillator(2 * zeta * std::sqrt(50.0 * 2.0));
+    const Model m = oscillator(2 * zeta * std::sqrt(50.0 * 2.0), 1.0);
     Workspace w(m);
     const StableStep s = find_stable_step(m, m.rest_position, w);
     EXPECT_NEAR(s.step, 2.0 / 5.0 * (std::sqrt(1 + zeta * zeta) - zeta), 1e-3 * s.step) << zeta;
@@ -126,7 +119,7 @@ TEST(StableStep, StretchStiffensAndIsSeenAfterAFewLooks) {
 }
 
 TEST(StableStep, DescribesTheStiffestSpring) {
-  const Model m = oscillator(3.0);
+  const Model m = oscillator(3.0, 1.0);
   EXPECT_EQ(describe_spring(m, 0),
             "spring 0 (body points, node 0 to body points, node 1): k = 50 N/m, l0 = 1 m, "
             "c = 3 N s/m");

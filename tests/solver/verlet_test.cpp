@@ -19,6 +19,7 @@
 namespace sinew {
 namespace {
 
+using test::oscillator;
 using test::point_masses;
 using test::tissue_box;
 
@@ -27,14 +28,6 @@ State run(const Model& m, double h, int steps) {
   Workspace w(m);
   for (int i = 0; i < steps; ++i) verlet_step(m, h, s, w);
   return s;
-}
-
-// A mass of 2 kg on a spring of 50 N/m: omega = 5 rad/s. Start stretched by 0.1 m.
-Model oscillator(double damping = 0.0) {
-  Model m = point_masses({{Vec3(0, 0, 0), 0.0}, {Vec3(1.1, 0, 0), 2.0}});
-  add_attachment(m, 0, 1, 50.0, damping, 1.0);
-  finish(m);
-  return m;
 }
 
 TEST(Verlet, OneSpringOscillatesAtSqrtKOverMWithSecondOrderError) {

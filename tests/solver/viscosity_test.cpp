@@ -21,7 +21,7 @@ namespace {
 constexpr double pi = std::numbers::pi;
 
 // A bar of 0.1 x 0.1 x 0.2 m, held at its end z = 0, without gravity.
-Model bar(const Material& material, Index k) {
+Model short_bar(const Material& material, Index k) {
   BodySpec spec;
   spec.name = "bar";
   spec.mesh = beam(Vec3(0.1, 0.1, 0.2), {k, k, 2 * k});
@@ -99,7 +99,7 @@ TEST(Viscosity, DampsShearAlikeOnEveryMesh) {
   const double eta = material_viscosity(material, 0.2);
   std::vector<double> zetas;
   for (const Index k : {3, 4, 6}) {
-    const Model m = bar(material, k);
+    const Model m = short_bar(material, k);
     const Swing swing = measure_implicit(m, torsion(m), 0.02);
     EXPECT_NEAR(swing.zeta, eta * swing.omega / (2.0 * mu), 0.02 * swing.zeta) << k;
     zetas.push_back(swing.zeta / swing.omega);
@@ -110,7 +110,7 @@ TEST(Viscosity, DampsShearAlikeOnEveryMesh) {
 TEST(Viscosity, IsTheSameToBothSteppers) {
   if (test::sanitized) return;  // thousands of steps of what the other tests run, too
   const Material material = viscous(0.2);
-  const Model m = bar(material, 2);
+  const Model m = short_bar(material, 2);
   const std::vector<Vec3> shape = torsion(m);
   const Swing implicit = measure_implicit(m, shape, 0.004);
   Workspace workspace(m);
@@ -122,7 +122,7 @@ TEST(Viscosity, IsTheSameToBothSteppers) {
 
 // A bar that falls under its own weight: what it loses is what the account says.
 TEST(Viscosity, HeatIsInTheEnergyAccount) {
-  Model m = bar(viscous(0.3), 2);
+  Model m = short_bar(viscous(0.3), 2);
   m.gravity = Vec3(0.0, -9.81, 0.0);
   Workspace workspace(m);
   const double stable = find_stable_step(m, m.rest_position, workspace).step;

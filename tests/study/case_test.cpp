@@ -7,13 +7,14 @@
 
 #include "sinew/base/vec.h"
 #include "sinew/model/material.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew::study {
 namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path validation = fs::path(SINEW_SOURCE_DIR) / "validation";
+const fs::path validation = test::source_path("validation");
 
 class CaseFiles : public testing::Test {
  protected:

@@ -39,6 +39,14 @@ inline Model point_masses(const std::vector<Point>& points) {
   return m;
 }
 
+// 2 kg, held by a spring of 50 N/m that is at rest at 1 m: omega = 5 rad/s. Starts at `start` [m].
+inline Model oscillator(double damping = 0.0, double start = 1.1) {
+  Model m = point_masses({{Vec3(0, 0, 0), 0.0}, {Vec3(start, 0, 0), 2.0}});
+  add_attachment(m, 0, 1, 50.0, damping, 1.0);
+  finish(m);
+  return m;
+}
+
 // A spring with limits between two nodes.
 inline void add_limited(Model& m, Index a, Index b, double k, double l0, double stretch,
                         double compress) {

@@ -1,0 +1,13 @@
+// Where the repository lies. One source file knows it, so that no other command line holds a path
+// of this machine and compiler caches work across folders.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace sinew::test {
+
+// Absolute, of a file or folder named from the root of the repository: source_path("scenes").
+std::string source_path(std::string_view name);
+
+}  // namespace sinew::test
