@@ -28,13 +28,24 @@ if(SINEW_SANITIZE)
   target_link_options(sinew_flags INTERFACE -fsanitize=${SINEW_SANITIZE})
 endif()
 
+# A plain build takes the sources of a room in batches (unity) and the heaviest headers precompiled:
+# most of a compiler's time goes into headers and the templates in them, once for each source. The
+# preset debug does without both, so that a missing include is seen.
+option(SINEW_FAST_BUILD "Unity builds and precompiled headers" ON)
+set(SINEW_BATCH 8 CACHE STRING "Sources in a batch of a unity build")
+if(SINEW_FAST_BUILD AND CCACHE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  add_compile_options(-fpch-preprocess)  # ccache needs it to see through precompiled headers
+endif()
+
 # sinew_precompile(TARGET FIRST [headers...]): the heaviest headers precompiled, once for all targets
-# that name the same FIRST, whose flags they share; a build takes a third less. The rooms themselves
-# go without in the plain build, so that a missing include is seen.
+# that name the same FIRST, whose flags they share.
 function(sinew_precompile target first)
+  if(NOT SINEW_FAST_BUILD)
+    return()
+  endif()
   if(target STREQUAL first)
     target_precompile_headers(${target} PRIVATE <Eigen/Core> <Eigen/Geometry> <algorithm>
-      <fmt/format.h> <functional> <map> <string> <vector> ${ARGN})
+      <fmt/format.h> <functional> <map> <string> <tbb/parallel_for.h> <vector> ${ARGN})
   else()
     target_precompile_headers(${target} REUSE_FROM ${first})
   endif()
@@ -59,9 +70,9 @@ function(sinew_room name level)
     add_library(sinew_${name} STATIC ${sources})
     target_link_libraries(sinew_${name} PUBLIC sinew_flags ${below} ${ARGN})
     target_compile_definitions(sinew_${name} PRIVATE SINEW_VERSION="${PROJECT_VERSION}")
-    if(SINEW_SANITIZE)
-      sinew_precompile(sinew_${name} sinew_base)
-    endif()
+    sinew_precompile(sinew_${name} sinew_base)
+    set_target_properties(sinew_${name} PROPERTIES UNITY_BUILD ${SINEW_FAST_BUILD}
+      UNITY_BUILD_BATCH_SIZE ${SINEW_BATCH})
   else()
     add_library(sinew_${name} INTERFACE)
     target_link_libraries(sinew_${name} INTERFACE sinew_flags ${below} ${ARGN})

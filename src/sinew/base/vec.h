@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 
 namespace sinew {
 
@@ -16,6 +17,8 @@ using Index = std::int32_t;             // a node, tet, spring ... of a mesh or 
 using Edge = std::array<Index, 2>;      // two node ids, the smaller first
 using Triangle = std::array<Index, 3>;  // three node ids, counter-clockwise seen from outside
 using Tet = std::array<Index, 4>;       // four node ids, positive signed volume
+
+inline constexpr double radians = std::numbers::pi / 180.0;  // in a degree
 
 // An index as a subscript: v[uz(i)] says that i is known not to be negative.
 constexpr std::size_t uz(Index i) {

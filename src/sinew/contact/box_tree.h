@@ -35,6 +35,14 @@ struct Box {
   }
 };
 
+// Around the nodes at positions x [m] (nodes of the model).
+template <std::size_t n>
+Box box_around(const std::array<Index, n>& nodes, const std::vector<Vec3>& x) {
+  Box box;
+  for (const Index i : nodes) box.add(x[uz(i)]);
+  return box;
+}
+
 class BoxTree {
  public:
   // The shape of the tree, from the items' centres: nearby ones share a branch. Leaves hold at most

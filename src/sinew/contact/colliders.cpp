@@ -13,7 +13,6 @@
 namespace sinew {
 namespace {
 
-using Box = Eigen::AlignedBox3d;
 
 // ---- the shape of an obstacle, in its own frame ----
 
@@ -65,7 +64,7 @@ struct Moving {
   const Obstacle* obstacle = nullptr;
   Index index = -1;
   Pose before, after;
-  Box box;  // around its whole way, with the reach; not of a plane
+  Eigen::AlignedBox3d box;  // around its whole way, with the reach; not of a plane
 };
 
 Moving moving(const Obstacle& o, Index index, double t0, double t1, double reach) {
@@ -141,7 +140,7 @@ void add_node(const Moving& m, Index node, const std::vector<Vec3>& from,
 
 // Which sides of a box a node is beyond at both ends of its way: as bits. What three nodes share,
 // the triangle between them is beyond too, all the way.
-unsigned beyond(const Box& box, const Vec3& x0, const Vec3& x1) {
+unsigned beyond(const Eigen::AlignedBox3d& box, const Vec3& x0, const Vec3& x1) {
   unsigned bits = 0;
   for (int a = 0; a < 3; ++a) {
     bits |= (x0[a] < box.min()[a] && x1[a] < box.min()[a]) ? 1U << (2 * a) : 0U;
@@ -209,12 +208,12 @@ void add_triangles(const Model& model, const Moving& m, std::size_t body,
 }
 
 // Boxes around the ways of the bodies' surfaces.
-std::vector<Box> boxes_of_bodies(const Model& model, const std::vector<Vec3>& from,
+std::vector<Eigen::AlignedBox3d> boxes_of_bodies(const Model& model, const std::vector<Vec3>& from,
                                  const std::vector<Vec3>& to) {
-  std::vector<Box> boxes(model.bodies.size());
+  std::vector<Eigen::AlignedBox3d> boxes(model.bodies.size());
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     const Range own = model.skin.body_nodes[b];
-    Box& box = boxes[b];
+    Eigen::AlignedBox3d& box = boxes[b];
     for (Index k = own.begin; k < own.end; ++k) {
       const auto n = uz(model.skin.nodes[uz(k)]);
       box.extend(from[n]);
@@ -225,7 +224,7 @@ std::vector<Box> boxes_of_bodies(const Model& model, const std::vector<Vec3>& fr
 }
 
 // Whether some of the box may be within `reach` of the obstacle on the way.
-bool may_meet(const Moving& m, const Box& body, double reach) {
+bool may_meet(const Moving& m, const Eigen::AlignedBox3d& body, double reach) {
   if (m.obstacle->shape != ObstacleShape::plane) return body.intersects(m.box);
   for (const Pose* pose : {&m.before, &m.after}) {
     const Vec3 n = pose->turn.col(1);
@@ -278,7 +277,7 @@ void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
       movers.push_back(moving(obstacle, static_cast<Index>(o), t0, t1, reach));
   }
   if (movers.empty()) return;
-  const std::vector<Box> boxes = boxes_of_bodies(model, from, to);
+  const std::vector<Eigen::AlignedBox3d> boxes = boxes_of_bodies(model, from, to);
   for (const Moving& m : movers) {
     for (std::size_t b = 0; b < boxes.size(); ++b) {
       if (!may_meet(m, boxes[b], reach)) continue;

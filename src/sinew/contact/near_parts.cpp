@@ -19,13 +19,6 @@ Box box_of(const Vec3& x) {
   return {x, x};
 }
 
-template <std::size_t n>
-Box box_around(const std::array<Index, n>& nodes, const std::vector<Vec3>& x) {
-  Box b;
-  for (const Index i : nodes) b.add(x[uz(i)]);
-  return b;
-}
-
 // Appends what is near a key, nearest first.
 void close_key(std::vector<std::pair<float, Index>>& near, Index key, NearList& list) {
   if (near.empty()) return;

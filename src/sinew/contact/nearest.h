@@ -10,6 +10,12 @@
 
 namespace sinew {
 
+// v / |v|; 0 where v has no direction.
+inline Vec3 unit(const Vec3& v) {
+  const double n = v.norm();
+  return n > 0.0 ? Vec3(v / n) : Vec3(Vec3::Zero());
+}
+
 // The parameter in [0, 1] of the point of the segment a b that is nearest to p; 0 where a = b.
 inline double nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 e = b - a;

@@ -19,13 +19,6 @@ bool inside(const Vec3& p, const std::vector<Vec3>& x, const Tet& t) {
          signed_volume(a, b, p, d) / all >= 0.0 && signed_volume(a, b, c, p) / all >= 0.0;
 }
 
-template <std::size_t n>
-Box box_around(const std::array<Index, n>& nodes, const std::vector<Vec3>& x) {
-  Box box;
-  for (const Index i : nodes) box.add(x[uz(i)]);
-  return box;
-}
-
 BoxTree tree_of(const std::vector<Box>& boxes) {
   std::vector<Vec3> centres;
   for (const Box& b : boxes) centres.push_back(0.5 * (b.lo + b.hi));

@@ -12,11 +12,6 @@ constexpr double opposed = 0.3;       // cosine of node's and triangle's normals
 constexpr double opposed_self = 0.0;  // the same within a body
 
 // 0 where there is no direction.
-Vec3 unit(const Vec3& v) {
-  const double n = v.norm();
-  return n > 0.0 ? Vec3(v / n) : Vec3(Vec3::Zero());
-}
-
 OnTriangle nearest_on(const Vec3& p, const std::vector<Vec3>& x, const Triangle& t) {
   return nearest_on_triangle(p, x[uz(t[0])], x[uz(t[1])], x[uz(t[2])]);
 }

@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "sinew/contact/meeting.h"
+#include "sinew/contact/nearest.h"
 #include "sinew/contact/touching.h"
 
 namespace sinew {
@@ -11,11 +12,6 @@ namespace {
 constexpr std::uint64_t edge_kind = std::uint64_t{1} << 62;
 // How much deeper than its end is away an edge may be before its answer, as a share of the size.
 constexpr double end_share = 0.05;
-
-Vec3 unit(const Vec3& v) {
-  const double n = v.norm();
-  return n > 0.0 ? Vec3(v / n) : Vec3(Vec3::Zero());
-}
 
 }  // namespace
 

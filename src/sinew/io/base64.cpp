@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdint>
 
+#include "sinew/io/text_reader.h"
+
 namespace sinew::io {
 namespace {
 
@@ -20,10 +22,6 @@ constexpr std::array<std::uint8_t, 256> make_values() {
   return values;
 }
 constexpr std::array<std::uint8_t, 256> values = make_values();
-
-bool is_blank(char c) {
-  return c == ' ' || (c >= '\t' && c <= '\r');
-}
 
 }  // namespace
 

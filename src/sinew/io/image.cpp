@@ -18,7 +18,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::int64_t most_voxels = std::int64_t{1} << 31;
-constexpr const char* cut_short = "the file was cut short: fetch or export it again";
 
 double voxel(const char* at, VoxelType type, bool swap) {
   switch (type) {

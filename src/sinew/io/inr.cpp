@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t block = 256;
 constexpr std::size_t longest_header = 64 * block;
-constexpr std::string_view magic = "#INRIMAGE-4#{";
+constexpr std::string_view inr_magic = "#INRIMAGE-4#{";
 
 std::string_view trimmed(std::string_view text) {
   while (!text.empty() && static_cast<unsigned char>(text.front()) <= ' ') text.remove_prefix(1);
@@ -27,11 +27,11 @@ class InrHeader {
  public:
   explicit InrHeader(ImageBytes& bytes) : bytes_(bytes) {
     text_ = bytes.first(longest_header);
-    if (!text_.starts_with(magic)) {
+    if (!text_.starts_with(inr_magic)) {
       bytes.fail("is not an INR file: it does not begin with \"#INRIMAGE-4#{\"",
                  "export the image again, as INRIMAGE-4 or NIfTI-1");
     }
-    std::size_t at = magic.size();
+    std::size_t at = inr_magic.size();
     while (true) {
       const std::size_t end = text_.find('\n', at);
       if (end == std::string::npos) {

@@ -9,7 +9,7 @@
 namespace sinew::io {
 namespace {
 
-constexpr std::size_t header_bytes = 348;
+constexpr std::size_t nifti_header_bytes = 348;
 
 // Fields of the header by their place in it.
 class Header {
@@ -86,16 +86,16 @@ void place(const Header& header, LabelImage& image) {
 
 LabelImage parse_nifti(std::string_view text, const std::string& file) {
   ImageBytes bytes(text, file);
-  const std::string copy(bytes.first(header_bytes));
+  const std::string copy(bytes.first(nifti_header_bytes));
   const auto is = [&](std::int32_t size, bool swap) {
     return copy.size() >= 4 && from_bytes<std::int32_t>(copy.data(), swap) == size;
   };
   if (is(540, false) || is(540, true)) {
     bytes.fail("is a NIfTI-2 file", "export it as NIfTI-1 (.nii)");
   }
-  const bool swap = is(static_cast<std::int32_t>(header_bytes), true);
-  if (copy.size() < header_bytes ||
-      (!swap && !is(static_cast<std::int32_t>(header_bytes), false))) {
+  const bool swap = is(static_cast<std::int32_t>(nifti_header_bytes), true);
+  if (copy.size() < nifti_header_bytes ||
+      (!swap && !is(static_cast<std::int32_t>(nifti_header_bytes), false))) {
     bytes.fail("is not a NIfTI-1 file: its header of 348 bytes is missing",
                "export the image again as NIfTI-1 (.nii or .nii.gz)");
   }
@@ -116,7 +116,7 @@ LabelImage parse_nifti(std::string_view text, const std::string& file) {
   VoxelLayout layout;
   for (std::size_t a = 0; a < 3; ++a) layout.size[a] = header.at<std::int16_t>(42 + 2 * a);
   const double offset = header.real(108);
-  if (!(offset >= header_bytes && offset < 1e9)) {
+  if (!(offset >= nifti_header_bytes && offset < 1e9)) {
     bytes.fail(fmt::format("its voxels start at byte {}; 352 was expected", offset),
                "export the image again");
   }

@@ -14,9 +14,8 @@
 namespace sinew::io {
 namespace {
 
-constexpr std::size_t header_bytes = 84;
+constexpr std::size_t stl_header_bytes = 84;
 constexpr std::size_t triangle_bytes = 50;
-constexpr const char* cut_short = "the file was cut short: fetch or export it again";
 
 // Nodes by the bits of their position, -0 taken for 0.
 class Corners {
@@ -44,7 +43,7 @@ std::uint64_t promised_triangles(std::string_view bytes) {
 SurfaceSoup parse_binary(std::string_view bytes, const std::string& file) {
   constexpr bool swap = std::endian::native == std::endian::big;
   const std::uint64_t promised = promised_triangles(bytes);
-  const std::uint64_t room = (bytes.size() - header_bytes) / triangle_bytes;
+  const std::uint64_t room = (bytes.size() - stl_header_bytes) / triangle_bytes;
   if (promised > room) {
     throw Error(ErrorKind::input,
                 fmt::format("promises {} triangles, but its {} bytes hold only {}", promised,
@@ -54,7 +53,7 @@ SurfaceSoup parse_binary(std::string_view bytes, const std::string& file) {
   Corners corners;
   PolygonList polygons;
   for (std::uint64_t t = 0; t < promised; ++t) {
-    const char* at = bytes.data() + header_bytes + t * triangle_bytes + 12;  // after the normal
+    const char* at = bytes.data() + stl_header_bytes + t * triangle_bytes + 12;  // after the normal
     polygons.start();
     for (int k = 0; k < 3; ++k, at += 12) {
       polygons.add(corners.id({from_bytes<float>(at, swap), from_bytes<float>(at + 4, swap),
@@ -105,17 +104,17 @@ SurfaceSoup parse_text(std::string_view text, const std::string& file) {
 SurfaceSoup parse_stl(std::string_view bytes, const std::string& file) {
   // Some binary files begin with "solid" too; their length gives them away, or bytes that no text
   // has.
-  const bool exact = bytes.size() >= header_bytes &&
-                     bytes.size() == header_bytes + triangle_bytes * promised_triangles(bytes);
+  const bool exact = bytes.size() >= stl_header_bytes &&
+                     bytes.size() == stl_header_bytes + triangle_bytes * promised_triangles(bytes);
   const bool text =
       bytes.starts_with("solid") && bytes.substr(0, 1024).find('\0') == std::string_view::npos;
   if (text && !exact) return parse_text(bytes, file);
-  if (bytes.size() < header_bytes) {
+  if (bytes.size() < stl_header_bytes) {
     throw Error(
         ErrorKind::input,
         fmt::format("is not an STL file: it does not begin with \"solid\", and a binary one "
                     "has at least {} bytes, not {}",
-                    header_bytes, bytes.size()),
+                    stl_header_bytes, bytes.size()),
         "export the surface again", {file});
   }
   return parse_binary(bytes, file);

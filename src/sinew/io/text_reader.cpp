@@ -15,10 +15,6 @@ namespace {
 constexpr std::string_view cut_short_remedy =
     "the file was cut short or its count is too large: fetch it again, or correct the count";
 
-bool is_blank(char c) {
-  return c == ' ' || (c >= '\t' && c <= '\r');
-}
-
 int column_of(const char* place, const char* line_start) {
   return static_cast<int>(
       std::min<std::ptrdiff_t>(place - line_start + 1, std::numeric_limits<int>::max()));

@@ -12,6 +12,14 @@
 
 namespace sinew::io {
 
+// What divides words: space, and tab to carriage return.
+constexpr bool is_blank(char c) {
+  return c == ' ' || (c >= '\t' && c <= '\r');
+}
+
+// The remedy for a file that ends too early.
+inline constexpr const char* cut_short = "the file was cut short: fetch or export it again";
+
 // What the reader is about to read, for its errors: "x of vertex 12", "the number of vertices".
 // A plain value, put into words only when something is wrong.
 struct Wanted {

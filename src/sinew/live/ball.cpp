@@ -12,7 +12,7 @@ namespace {
 // is this many moduli per radius.
 constexpr double hardness = 20.0;
 // Of what the stiffest mode has per mass, what the ball may add to a node.
-constexpr double stable_share = 0.1;
+constexpr double stable_ball_share = 0.1;
 constexpr double fastest = 3.0;       // sizes of the body in a second
 constexpr double growing_time = 0.1;  // [s]
 constexpr double smallest = 1e-3;     // share of its radius that the ball begins with
@@ -31,7 +31,7 @@ double Ball::pressure(const Model& model) const {
   const double omega = 2.0 / stable_step_;
   for (std::size_t i = 0; i < model.surface_share.size(); ++i) {
     if (model.surface_share[i] == 0.0 || model.inverse_mass[i] == 0.0) continue;
-    k = std::min(k, stable_share * omega * omega * model.mass[i] / model.surface_share[i]);
+    k = std::min(k, stable_ball_share * omega * omega * model.mass[i] / model.surface_share[i]);
   }
   return k;
 }

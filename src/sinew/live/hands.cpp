@@ -14,7 +14,7 @@ constexpr double stiffness_of_disc = 4.0;  // K / (E r)
 // A hand at this share of the body's size from what it holds carries the body's weight.
 constexpr double reach = 0.1;
 // Of what the stiffest mode has per mass, what a hand may add to a node.
-constexpr double stable_share = 0.1;
+constexpr double stable_hand_share = 0.1;
 
 const Body& body_of(const Model& model, Index node) {
   return *std::find_if(model.bodies.begin(), model.bodies.end(),
@@ -115,7 +115,7 @@ void Hands::apply(Model& model, State& state) const {
     Tether tether{h.nodes, {}, h.offset, h.target};
     for (std::size_t i = 0; i < h.nodes.size(); ++i) {
       const double omega = 2.0 / stable_step_;
-      const double most = stable_share * model.mass[uz(h.nodes[i])] * omega * omega;
+      const double most = stable_hand_share * model.mass[uz(h.nodes[i])] * omega * omega;
       const double k = all * h.share[i];
       tether.stiffness.push_back(stable_step_ < no_limit ? std::min(k, most) : k);
     }

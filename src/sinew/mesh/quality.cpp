@@ -92,8 +92,8 @@ Quality measure_quality(const TetMesh& mesh, const EdgeTable& edges) {
     quality.volume += volume;
     volumes.add(volume);
     ratios.add(radius_ratio(corners));
-    for (const double radians : dihedral_angles(corners)) {
-      const double degrees = radians * 180 / std::numbers::pi;
+    for (const double angle : dihedral_angles(corners)) {
+      const double degrees = angle * 180 / std::numbers::pi;
       angles.add(degrees);
       const auto bin = static_cast<std::size_t>(degrees / 10);
       ++quality.dihedral_histogram[std::min(bin, kDihedralBins - 1)];

@@ -8,7 +8,7 @@ namespace sinew::report {
 
 namespace {
 
-constexpr const char* kGap = "  ";
+constexpr const char* column_gap = "  ";
 
 std::string padded(const std::string& text, int to, Align align) {
   const std::string space(static_cast<std::size_t>(std::max(0, to - width(text))), ' ');
@@ -35,7 +35,7 @@ std::string to_text(const Table& table) {
   if (!table.caption.empty()) out += table.caption + "\n";
   const auto add_line = [&](const auto& text_of) {
     for (std::size_t i = 0; i < count; ++i)
-      out += (i == 0 ? "" : kGap) + padded(text_of(i), widths[i], table.columns[i].align);
+      out += (i == 0 ? "" : column_gap) + padded(text_of(i), widths[i], table.columns[i].align);
     end_line(out);
   };
   add_line([&](std::size_t i) { return table.columns[i].title; });

@@ -23,10 +23,6 @@ constexpr const char* checkpoint_name = "checkpoint.bin";
 constexpr const char* scene_name = "scene.toml";
 constexpr const char* summary_name = "summary.json";
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 // The folder to write, made and empty of earlier runs.
 void prepare_folder(const Scene& scene, const RunOptions& options) {
   if (options.out.empty()) return;

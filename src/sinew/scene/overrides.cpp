@@ -16,7 +16,7 @@ namespace {
 constexpr std::array<std::string_view, 7> named_tables = {
     "body", "pin", "attachment", "distance", "force", "probe", "obstacle"};
 
-using Path = std::vector<std::string>;
+using KeyPath = std::vector<std::string>;
 
 std::string trimmed(std::string_view text) {
   const std::size_t begin = text.find_first_not_of(" \t\r\n");
@@ -170,7 +170,7 @@ class Override {
   DocValue& root_;
   Location where_;
   std::string value_text_;
-  Path path_;
+  KeyPath path_;
 };
 
 }  // namespace

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numbers>
 
 #include "sinew/scene/filled.h"
 #include "sinew/scene/parse.h"
@@ -12,8 +11,6 @@
 namespace sinew {
 
 namespace {
-
-constexpr double radians = std::numbers::pi / 180.0;
 
 // A key that only some shapes have.
 struct ShapeKey {

@@ -10,12 +10,12 @@ namespace sinew {
 namespace {
 
 // Which shapes a key belongs to, and whether they cannot do without it.
-struct ShapeKey {
+struct ObstacleKey {
   std::string_view key;
   std::string_view shapes;
   std::string_view needed_by;
 };
-constexpr std::array<ShapeKey, 12> shape_keys = {{
+constexpr std::array<ObstacleKey, 12> obstacle_keys = {{
     {"center", "sphere plane capsule box mesh", "sphere plane capsule box"},
     {"radius", "sphere capsule", "sphere capsule"},
     {"length", "capsule", "capsule"},
@@ -37,7 +37,7 @@ bool has_word(std::string_view words, const std::string& word) {
 
 // A key that would have no effect is a mistake, and so is one that is missing.
 void check_keys(const Reader& reader, const std::string& shape) {
-  for (const ShapeKey& k : shape_keys) {
+  for (const ObstacleKey& k : obstacle_keys) {
     if (has_word(k.needed_by, shape) && !reader.has(k.key))
       throw Error(
           ErrorKind::input,

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <numbers>
 
 #include "sinew/scene/parse.h"
 
@@ -8,7 +7,6 @@ namespace sinew {
 
 namespace {
 
-constexpr double radians = std::numbers::pi / 180.0;
 
 Selection::Box parse_box(const DocValue& value, const std::string& name) {
   const Reader reader(value, name, {&key_tables().box});

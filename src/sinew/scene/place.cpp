@@ -24,7 +24,6 @@ namespace {
 
 // Tets smaller than this have no mass to speak of [m3].
 constexpr double kSmallestTet = 1e-60;
-constexpr double kLargestPlace = 1e9;  // of a coordinate [m]
 
 // The path as a user would write it: from the current folder where it lies below that.
 fs::path shown(const fs::path& path) {
@@ -155,7 +154,7 @@ double checked_volume(const PlacedBody& placed) {
   }
   const double largest =
       std::max(placed.low.cwiseAbs().maxCoeff(), placed.high.cwiseAbs().maxCoeff());
-  if (!(least > kSmallestTet) || !(largest < kLargestPlace))
+  if (!(least > kSmallestTet) || !(largest < largest_place))
     throw Error(
         ErrorKind::input,
         fmt::format("[body.{}] cannot be simulated where it is placed: its smallest tet has "

@@ -9,6 +9,8 @@
 
 namespace sinew {
 
+inline constexpr double largest_place = 1e9;  // of a coordinate [m]
+
 struct PlacedBody {
   const SceneBody* body = nullptr;
   std::string source;               // the mesh file, or "shape beam"

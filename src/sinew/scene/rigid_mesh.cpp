@@ -8,13 +8,13 @@
 #include <set>
 
 #include "sinew/io/surface_file.h"
+#include "sinew/scene/place.h"
 
 namespace sinew {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLargestPlace = 1e9;  // of a coordinate [m]
 
 [[noreturn]] void refuse(const SceneObstacle& o, const std::string& what,
                          const std::string& remedy) {
@@ -95,7 +95,7 @@ RigidMesh read_rigid_mesh(const Scene& scene, const SceneObstacle& o) {
   const Mat3 turn = o.rotation.toRotationMatrix();
   for (Vec3& x : mesh.vertices) {
     x = o.center + turn * (o.scale * x);
-    if (!(x.cwiseAbs().maxCoeff() < kLargestPlace))
+    if (!(x.cwiseAbs().maxCoeff() < largest_place))
       refuse(o, "is placed beyond 1e9 m", "check scale and center; they are in metres");
   }
   return mesh;

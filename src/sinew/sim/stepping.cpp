@@ -55,10 +55,6 @@ const char* only_verlet_knows(const Model& model) {
   return model.bounces() ? "restitution" : nullptr;
 }
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 // Whether the path goes on anywhere between the times `from` and `to`.
 bool moves(const Path& path, double from, double to) {
   KeyFrame last;

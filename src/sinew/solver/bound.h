@@ -9,6 +9,9 @@
 
 namespace sinew {
 
+// Friction goes by normal forces that are right to this share.
+inline constexpr double grip_tolerance = 2e-3;
+
 // A quantity q that has to stay in [low, high], with a stiffness k > 0 and the multiplier p of the
 // pass before:
 //

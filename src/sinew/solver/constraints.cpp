@@ -19,8 +19,6 @@ constexpr double ratio = 10.0;  // of a condition's stiffness and what its nodes
 // mean edge; of a cell's volume, as a share of it (a tenth of its limit where that is less).
 constexpr double ground_tolerance = 1e-4;
 constexpr double cell_tolerance = 1e-4;
-// Friction goes by normal forces that are right to this share.
-constexpr double grip_tolerance = 2e-3;
 
 // 1/D_i [m/N] (nodes), 0 where the motion is given: the diagonal of M inertia + C rate + K at rest.
 std::vector<double> node_compliance(const Model& model, double inertia, double rate) {

@@ -13,8 +13,6 @@ namespace {
 // shares of the mean edge.
 constexpr double depth_tolerance = 1e-4;
 constexpr double reach_share = 0.05;
-// Friction goes by normal forces that are right to this share.
-constexpr double grip_tolerance = 2e-3;
 // So often are contacts found anew before those that are held stay as they are.
 constexpr int free_passes = 6;
 

@@ -19,7 +19,7 @@ namespace {
 
 constexpr double single_tolerance = 1e-3;
 
-constexpr int most_cuts = 10;
+constexpr int most_step_cuts = 10;
 
 const double sdirk2_share = 1.0 - std::sqrt(0.5);  // g: of a step, that each of its parts solves
 
@@ -220,12 +220,12 @@ ImplicitReport ImplicitStepper::advance(double h, const ImplicitOptions& options
     }
     state = before;  // report keeps what the attempt took, but no step left its residual
     report.residual = residual;
-    if (++cuts > most_cuts) {
+    if (++cuts > most_step_cuts) {
       throw Error(
           ErrorKind::diverged,
           fmt::format("the implicit step from t = {:.6g} s was cut {} times and still found "
                       "no equilibrium of forces",
-                      start.time, most_cuts),
+                      start.time, most_step_cuts),
           "take a smaller dt, a larger tolerance, or slower pins and loads");
     }
     ++report.cuts;

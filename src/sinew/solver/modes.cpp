@@ -8,20 +8,14 @@
 #include "sinew/base/parallel.h"
 #include "sinew/base/random.h"
 #include "sinew/forces/stiffness.h"
+#include "sinew/solver/field.h"
 #include "sinew/solver/static.h"
 
 namespace sinew {
 
 namespace {
 
-using Field = std::vector<Vec3>;
-
 constexpr int most_iterations = 60;
-
-double dot(const Field& a, const Field& b) {
-  return parallel_sum(static_cast<Index>(a.size()),
-                      [&](Index i) { return a[uz(i)].dot(b[uz(i)]); });
-}
 
 // Vectors that nothing in the mesh favours.
 std::vector<Field> start_block(const Model& model, int size) {

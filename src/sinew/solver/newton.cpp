@@ -13,15 +13,6 @@
 
 namespace sinew {
 
-double dot(const Field& a, const Field& b) {
-  return parallel_sum(static_cast<Index>(a.size()),
-                      [&](Index i) { return a[uz(i)].dot(b[uz(i)]); });
-}
-
-void add(Field& x, double a, const Field& y) {
-  parallel_for(static_cast<Index>(x.size()), [&](Index i) { x[uz(i)] += a * y[uz(i)]; });
-}
-
 void keep_free(const Model& model, Field& f) {
   parallel_for(model.node_count(), [&](Index i) {
     if (model.inverse_mass[uz(i)] == 0.0) f[uz(i)] = Vec3::Zero();
@@ -51,7 +42,7 @@ constexpr int most_products =
     500;  // for one direction; a truncated one leads downhill all the same
 // A load that no rest state can carry drives the body away: further than this many times its size,
 // Newton's method has lost it.
-constexpr double farthest = 10.0;
+constexpr double reach_in_bodies = 10.0;
 
 // x - from.
 Field way(const Objective& objective, const State& state) {
@@ -154,7 +145,7 @@ class Reach {
   Reach(const Model& model, const State& state) {
     const Vec3 rest = size(model.rest_position);
     const Vec3 now = size(state.position);  // leaves middle_ where the nodes are
-    reach_ = farthest * std::max(rest.maxCoeff(), now.maxCoeff());
+    reach_ = reach_in_bodies * std::max(rest.maxCoeff(), now.maxCoeff());
   }
   bool holds(const State& state) const {
     return std::all_of(state.position.begin(), state.position.end(), [&](const Vec3& x) {

@@ -10,12 +10,11 @@
 #include "sinew/model/state.h"
 #include "sinew/solver/constraints.h"
 #include "sinew/solver/deadline.h"
+#include "sinew/solver/field.h"
 
 namespace sinew {
 
 class LinearSolver;
-
-using Field = std::vector<Vec3>;  // one vector per node
 
 // What is minimised over the positions x of the free nodes: the potential energy of the model at
 // state.time, plus
@@ -85,10 +84,6 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
 NewtonReport minimise_within(const Objective& objective, LinearSolver& linear,
                              const NewtonOptions& options, Workspace& workspace, State& state);
 
-// --- sums over nodes, in an order that no thread count changes ---
-
-double dot(const Field& a, const Field& b);
-void add(Field& x, double a, const Field& y);  // x += a y
 void keep_free(const Model& model, Field& f);  // 0 on the nodes whose motion is given
 
 }  // namespace sinew

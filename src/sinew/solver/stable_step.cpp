@@ -17,16 +17,12 @@
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
+#include "sinew/solver/field.h"
 
 namespace sinew {
 namespace {
 
-using Field = std::vector<Vec3>;  // one vector per node, zero where the motion is given
-
-double dot(const Field& a, const Field& b) {
-  return parallel_sum(static_cast<Index>(a.size()),
-                      [&](Index i) { return a[uz(i)].dot(b[uz(i)]); });
-}
+// Fields here are zero where the motion is given.
 
 void scale_nodes(const Model& model, Field& u) {  // u = M^-1/2 u
   parallel_for(model.node_count(),

@@ -22,7 +22,7 @@ constexpr double turn_per_load_step = 20.0 * 3.14159265358979 / 180.0;  // [rad]
 // state of one whose kappa is at most this many times mu: W(4) at nu = 0.499 takes 41 instead of 74
 // at 15 kPa, 19 instead of 23 at 1.5 MPa.
 constexpr double soft_volume = 30.0;
-constexpr int most_cuts = 12;           // a load step may become this often half as long
+constexpr int most_load_cuts = 12;           // a load step may become this often half as long
 constexpr int cuts_before_falling = 2;  // then the body is followed as it falls to rest, once
 
 // The largest angle [rad] that a pin turns by between two times.
@@ -328,7 +328,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
       }
       continue;
     }
-    if (++cuts > most_cuts || report.newton - falls.newton > options.most_newton) {
+    if (++cuts > most_load_cuts || report.newton - falls.newton > options.most_newton) {
       throw Error(ErrorKind::diverged,
                   fmt::format("no rest state found: after {} Newton steps, at {:.3g} of the load, "
                               "the forces on the free nodes are {:.3g} of what they carry; there "

@@ -42,14 +42,14 @@ double cache_size(int level) {
 
 // Size of all arrays together that measures the level [B]: well within it, and well beyond the one
 // before. A shared L3 is not all ours: a few times L2 is.
-double array_bytes(Level level, const CacheSizes& caches, int threads) {
+double array_bytes(MemoryLevel level, const CacheSizes& caches, int threads) {
   const double l2 = caches.l2 * threads;
   switch (level) {
-    case Level::l2:
+    case MemoryLevel::l2:
       return 0.5 * l2;
-    case Level::l3:
+    case MemoryLevel::l3:
       return std::max(2.0 * l2, std::min(8.0 * caches.l2, 0.25 * caches.l3));
-    case Level::memory:
+    case MemoryLevel::memory:
       break;
   }
   return std::clamp(4.0 * caches.l3, 256.0 * MiB, 1.0 * GiB);
@@ -125,9 +125,9 @@ CacheSizes cache_sizes() {
   return caches;
 }
 
-Level level_of(const CacheSizes& caches, double bytes, int threads) {
-  if (bytes <= caches.l2 * threads) return Level::l2;
-  return bytes <= caches.l3 ? Level::l3 : Level::memory;
+MemoryLevel level_of(const CacheSizes& caches, double bytes, int threads) {
+  if (bytes <= caches.l2 * threads) return MemoryLevel::l2;
+  return bytes <= caches.l3 ? MemoryLevel::l3 : MemoryLevel::memory;
 }
 
 Machine describe_machine() {
@@ -144,7 +144,7 @@ std::optional<MachineLimits> measure_limits(const CacheSizes& caches, int thread
                                             const TimerOptions& options) {
   MachineLimits limits;
   limits.threads = threads;
-  for (const Level level : {Level::l2, Level::l3, Level::memory}) {
+  for (const MemoryLevel level : {MemoryLevel::l2, MemoryLevel::l3, MemoryLevel::memory}) {
     const auto found = measure_bandwidth(array_bytes(level, caches, threads), threads, options);
     if (!found) return std::nullopt;
     limits.level[static_cast<std::size_t>(level)] = *found;

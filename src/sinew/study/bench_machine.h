@@ -17,11 +17,11 @@ struct CacheSizes {
 };
 CacheSizes cache_sizes();
 
-enum class Level { l2, l3, memory };
+enum class MemoryLevel { l2, l3, memory };
 inline constexpr std::array<const char*, 3> level_names = {"L2", "L3", "memory"};
 
 // The nearest level that holds so many bytes, spread over the threads' cores.
-Level level_of(const CacheSizes& caches, double bytes, int threads);
+MemoryLevel level_of(const CacheSizes& caches, double bytes, int threads);
 
 struct Bandwidth {
   double bytes = 0.0;  // of the arrays, all threads together [B]
@@ -33,7 +33,7 @@ struct Bandwidth {
 // What so many threads of the machine do at best.
 struct MachineLimits {
   int threads = 1;
-  std::array<Bandwidth, 3> level;  // by Level
+  std::array<Bandwidth, 3> level;  // by MemoryLevel
   double flops = 0.0;              // [1/s] in single precision, a multiply-add counts twice
   double clock = 0.0;              // [Hz] of one core under that load
   double fma_per_cycle = 0.0;      // vector multiply-adds that one core starts in a cycle

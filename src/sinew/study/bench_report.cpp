@@ -9,7 +9,7 @@ namespace sinew::study {
 namespace {
 
 constexpr double mega = 1e6, giga = 1e9;
-constexpr double MiB = 1024.0 * 1024.0;
+constexpr double mebibyte = 1024.0 * 1024.0;
 
 // The version of what to_json writes: a later one may add keys, not change them.
 constexpr int schema = 1;
@@ -20,8 +20,8 @@ std::string time_text(double seconds) {
   return report::number(1e6 * seconds, 3) + " us";
 }
 
-std::string size_text(double bytes) {
-  if (bytes >= 0.1 * MiB) return report::number(bytes / MiB, 3) + " MiB";
+std::string bytes_text(double bytes) {
+  if (bytes >= 0.1 * mebibyte) return report::number(bytes / mebibyte, 3) + " MiB";
   return report::number(bytes / 1024.0, 3) + " KiB";
 }
 
@@ -31,7 +31,7 @@ std::string ns_text(double ns) {
   return ns >= 100.0 ? fmt::format("{:.0f}", ns) : report::number(ns, 3);
 }
 
-std::string share_text(double share) {
+std::string percent_of_bound(double share) {
   return share > 0.0 ? fmt::format("{:.0f} %", 100.0 * share) : "";
 }
 
@@ -49,7 +49,7 @@ report::Table limits_table(const BenchResult& result) {
   for (const MachineLimits& m : result.limits) {
     for (std::size_t l = 0; l < m.level.size(); ++l) {
       const Bandwidth& b = m.level[l];
-      table.rows.push_back({level_names[l], fmt::format("{}", m.threads), size_text(b.bytes),
+      table.rows.push_back({level_names[l], fmt::format("{}", m.threads), bytes_text(b.bytes),
                             report::number(b.copy / giga, 3), report::number(b.triad / giga, 3)});
     }
     table.rows.push_back(
@@ -114,7 +114,7 @@ std::string to_text(const BenchResult& result) {
   std::string text =
       fmt::format("{}, {} core{}, {} ({} floats), L2 {} a core, L3 {}\n", machine.processor,
                   machine.cores, machine.cores == 1 ? "" : "s", machine.instruction_set,
-                  machine.lanes, size_text(machine.caches.l2), size_text(machine.caches.l3));
+                  machine.lanes, bytes_text(machine.caches.l2), bytes_text(machine.caches.l3));
   if (!result.limits.empty()) {
     const MachineLimits& m = result.limits.front();
     text += fmt::format("{:.2f} GHz, {:.2f} vector multiply-adds a cycle\n\n", m.clock / giga,
@@ -141,7 +141,7 @@ std::string to_text(const BenchResult& result) {
                           time_text(r.time.median), ns_text(r.ns_per_item()), r.unit,
                           counted ? report::number(r.work.bytes / mega, 3) : "",
                           counted ? report::number(r.bandwidth() / giga, 3) : "", r.bound.by,
-                          share_text(r.share()), takes(r), r.hash});
+                          percent_of_bound(r.share()), takes(r), r.hash});
   }
   if (!table.rows.empty()) text.append("\n").append(to_text(table));
   if (result.stopped) text += "Interrupted.\n";

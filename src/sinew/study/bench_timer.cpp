@@ -11,10 +11,6 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int fewest = 5;
 
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 bool stopped(const TimerOptions& options) {
   return options.stop != nullptr && options.stop->load();
 }

@@ -160,7 +160,7 @@ Work iteration_work(const Model& model) {
 }
 
 Bound bound_of(const Work& work, const CacheSizes& caches, const MachineLimits& limits) {
-  const Level level = level_of(caches, work.working_set, limits.threads);
+  const MemoryLevel level = level_of(caches, work.working_set, limits.threads);
   const double moving = work.bytes / limits.level[static_cast<std::size_t>(level)].best();
   const double computing = work.flops / limits.flops;
   if (computing > moving) return {"FMA", computing};

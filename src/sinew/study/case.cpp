@@ -37,9 +37,9 @@ constexpr std::array<std::pair<const char*, Kind>, 14> kinds = {{
 constexpr const char* where_documented = "docs/validation.md lists the keys of a case";
 
 // A table whose keys are all known.
-class Table {
+class CaseTable {
  public:
-  Table(const DocValue& value, std::string name, const std::vector<std::string>& known)
+  CaseTable(const DocValue& value, std::string name, const std::vector<std::string>& known)
       : value_(value), name_(std::move(name)) {
     if (!value.is_table()) fail(value, "is not a table");
     for (const DocEntry& entry : value.entries) {
@@ -113,10 +113,10 @@ class Table {
   std::string name_;
 };
 
-std::vector<Choice> read_choices(const Table& root, const char* key) {
+std::vector<Choice> read_choices(const CaseTable& root, const char* key) {
   std::vector<Choice> out;
   for (const DocValue& item : root.items(key)) {
-    const Table t(item, fmt::format("[[{}]]", key), {"name", "set", "full", "limit"});
+    const CaseTable t(item, fmt::format("[[{}]]", key), {"name", "set", "full", "limit"});
     out.push_back(
         {t.text("name", true), t.texts("set"), t.boolean("full"), t.numbers("limit"), item.where});
     for (std::size_t i = 0; i + 1 < out.size(); ++i)
@@ -128,7 +128,7 @@ std::vector<Choice> read_choices(const Table& root, const char* key) {
 }
 
 Quantity read_quantity(const DocValue& item) {
-  const Table t(item, "[[quantity]]",
+  const CaseTable t(item, "[[quantity]]",
                 {"name", "kind", "of", "axis", "mode", "unit", "scale", "limit"});
   Quantity q;
   q.name = t.text("name", true);
@@ -188,10 +188,10 @@ void read_references(Case& c) {
                 "reference.toml has to be there; docs/validation.md says what it holds",
                 {file.string()});
   const DocValue document = parse_document(io::read_file(file), file.string());
-  const Table root(document, "reference.toml", {"source", "value"});
+  const CaseTable root(document, "reference.toml", {"source", "value"});
   c.source = root.text("source");
   for (const DocValue& item : root.items("value")) {
-    const Table t(item, "[[value]]", {"variant", "quantity", "value", "error"});
+    const CaseTable t(item, "[[value]]", {"variant", "quantity", "value", "error"});
     Reference r{t.text("variant"), t.text("quantity", true), t.number("value", true),
                 t.number("error")};
     check_known(r.variant, names_of(c.variants), "variant", item.where);
@@ -253,7 +253,7 @@ Case load_case(const fs::path& folder, const std::string& name) {
   c.folder = folder / name;
   const fs::path file = c.folder / "case.toml";
   const DocValue document = parse_document(io::read_file(file), file.string());
-  const Table root(document, "case.toml", {"title", "laws", "variant", "mesh", "quantity"});
+  const CaseTable root(document, "case.toml", {"title", "laws", "variant", "mesh", "quantity"});
   c.title = root.text("title", true);
   c.laws = root.texts("laws");
   for (const std::string& law : c.laws) {

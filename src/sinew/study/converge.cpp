@@ -42,13 +42,13 @@ void add_warnings(ConvergeResult& result) {
           "probe {}: the changes do not shrink as they should; look at more levels, a smoother "
           "load or select, or a scene that comes to rest (stepper = \"static\")",
           t.probe));
-  for (const Level& level : result.levels)
+  for (const MeshLevel& level : result.levels)
     if (level.inverted_tets > 0)
       result.warnings.push_back(
           fmt::format("{} tets are inverted at level {}", level.inverted_tets, level.refine));
 }
 
-nlohmann::ordered_json vec(const Vec3& v) {
+nlohmann::ordered_json json_of(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
@@ -130,7 +130,7 @@ std::string to_text(const ConvergeResult& r) {
   for (std::size_t l = 0; l < r.levels.size(); ++l)
     for (std::size_t p = 0; p < r.trends.size(); ++p) {
       const std::vector<Vec3>& u = r.trends[p].displacement;
-      const Level& level = r.levels[l];
+      const MeshLevel& level = r.levels[l];
       const bool first = p == 0;
       levels.rows.push_back(
           {first ? fmt::format("{}", l) : "", first ? fmt::format("{}", level.tets) : "",
@@ -157,7 +157,7 @@ std::string to_text(const ConvergeResult& r) {
 
 nlohmann::ordered_json to_json(const ConvergeResult& r) {
   nlohmann::ordered_json levels = nlohmann::ordered_json::array();
-  for (const Level& l : r.levels)
+  for (const MeshLevel& l : r.levels)
     levels.push_back({{"refine", l.refine},
                       {"nodes", l.nodes},
                       {"tets", l.tets},
@@ -166,11 +166,11 @@ nlohmann::ordered_json to_json(const ConvergeResult& r) {
   nlohmann::ordered_json probes = nlohmann::ordered_json::object();
   for (const Trend& t : r.trends) {
     nlohmann::ordered_json displacement = nlohmann::ordered_json::array();
-    for (const Vec3& u : t.displacement) displacement.push_back(vec(u));
+    for (const Vec3& u : t.displacement) displacement.push_back(json_of(u));
     probes[t.probe] = {{"displacement", displacement},
                        {"order", std::isfinite(t.order) ? nlohmann::ordered_json(t.order)
                                                         : nlohmann::ordered_json()},
-                       {"extrapolated", vec(t.extrapolated)},
+                       {"extrapolated", json_of(t.extrapolated)},
                        {"error", t.error},
                        {"converges", t.converges}};
   }

@@ -18,7 +18,7 @@ struct ConvergeOptions {
   std::function<void(int level, double share)> on_progress;  // level from 0, share of its run
 };
 
-struct Level {
+struct MeshLevel {
   int refine = 0;  // times that the tets of the scene's own mesh were cut into eight
   Index nodes = 0, tets = 0;
   Index inverted_tets = 0;
@@ -38,7 +38,7 @@ struct Trend {
 
 struct ConvergeResult {
   std::string scene, title;
-  std::vector<Level> levels;  // those that ran
+  std::vector<MeshLevel> levels;  // those that ran
   std::vector<Trend> trends;  // (probes)
   bool stopped = false;
   std::vector<std::string> warnings;

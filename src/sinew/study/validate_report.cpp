@@ -72,7 +72,7 @@ std::string error_text(double error) {
 }
 
 // A median or a largest value has no sign.
-std::string size_text(double error) {
+std::string magnitude_text(double error) {
   return std::isnan(error) ? "-" : fmt::format("{:.{}f} %", 100 * error, error < 0.1 ? 2 : 1);
 }
 
@@ -135,8 +135,8 @@ Table trials_table(const CaseResult& result) {
     if (failed > 0) tets += fmt::format(" ({} of {} failed)", failed, trials.size());
     const bool bad = column.law->name == network && inverted > 0;
     table.rows.push_back({column.law->title, result.definition.meshes[column.mesh].name, tets,
-                          size_text(median_error(result, column.law->name, column.mesh)),
-                          size_text(largest),
+                          magnitude_text(median_error(result, column.law->name, column.mesh)),
+                          magnitude_text(largest),
                           Cell(fmt::format("{}", inverted), bad ? Tone::bad : Tone::plain),
                           report::percent(volume, 2), fmt::format("{:.2f}", seconds)});
   }
@@ -152,7 +152,7 @@ Table summary_table(const SuiteResult& result) {
   for (const CaseResult& r : result.cases) {
     std::vector<Cell> row = {r.definition.name, fmt::format("{}", r.trials.front().tets)};
     for (const LawChoice& law : law_choices())
-      row.emplace_back(size_text(median_error(r, law.name, 0)));
+      row.emplace_back(magnitude_text(median_error(r, law.name, 0)));
     int limits = 0, missed = 0;
     for (const Value& v : r.values) {
       limits += v.limit ? 1 : 0;
@@ -165,7 +165,7 @@ Table summary_table(const SuiteResult& result) {
   }
   std::vector<Cell> all = {"all values", ""};
   for (const LawChoice& law : law_choices())
-    all.emplace_back(size_text(median_error_coarsest(result, law.name)));
+    all.emplace_back(magnitude_text(median_error_coarsest(result, law.name)));
   table.rows.push_back(std::move(all));
   return table;
 }
@@ -178,7 +178,7 @@ std::string verdict(const SuiteResult& result) {
     text = fmt::format(
         "On the coarsest meshes the median error of the network law is {}, that of linear FEM {}: "
         "a share of {:.2f}. ",
-        size_text(ours), size_text(theirs), ours / theirs);
+        magnitude_text(ours), magnitude_text(theirs), ours / theirs);
   text += result.stopped ? "Interrupted: not every experiment was run. " : "";
   return text + (result.holds() ? "All thresholds hold." : "Not all thresholds hold.");
 }
@@ -199,7 +199,7 @@ std::vector<std::string> complaints(const CaseResult& r) {
   for (const Value& v : r.values)
     if (!v.holds && std::isfinite(v.error))
       list.push_back(fmt::format("{}: {} is off by {}, allowed are {}", name(r.trials[v.trial]),
-                                 v.quantity, error_text(v.error), size_text(*v.limit)));
+                                 v.quantity, error_text(v.error), magnitude_text(*v.limit)));
   return list;
 }
 
