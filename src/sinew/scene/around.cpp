@@ -24,7 +24,7 @@ std::string body_name(const std::string& stem) {
   return name.empty() ? "body" : name;
 }
 
-std::string toml_quoted(const std::string& text) {
+std::string toml_text(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') out += '\\';
@@ -65,7 +65,7 @@ Scene scene_around(const std::filesystem::path& mesh, const std::vector<std::str
       "drag = 3\n\n"
       "[pin.top]\n"
       "select = {{ side = \"+y\", depth = {5} }}\n",
-      mesh.filename().string(), toml_quoted(mesh.filename().string()),
+      mesh.filename().string(), toml_text(mesh.filename().string()),
       millimetres ? "It was taken to be in millimetres." : "It was taken to be in metres.", name,
       scale, 0.1 * scale * (high - low).y());
   return parse_scene(text, mesh.string() + ".toml", mesh.parent_path(), overrides);

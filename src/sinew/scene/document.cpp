@@ -140,7 +140,7 @@ bool bare(std::string_view key) {
   });
 }
 
-std::string quoted(std::string_view text) {
+std::string toml_string(std::string_view text) {
   std::string out = "\"";
   for (const char c : text) {
     if (c == '"' || c == '\\') {
@@ -158,7 +158,7 @@ std::string quoted(std::string_view text) {
 }
 
 std::string key_text(const std::string& key) {
-  return bare(key) ? key : quoted(key);
+  return bare(key) ? key : toml_string(key);
 }
 
 std::string number_text(double number) {
@@ -178,7 +178,7 @@ std::string inline_text(const DocValue& value) {
     case DocValue::Type::number:
       return number_text(value.number);
     case DocValue::Type::text:
-      return quoted(value.text);
+      return toml_string(value.text);
     case DocValue::Type::array:
       for (const DocValue& item : value.items) out += (out.empty() ? "" : ", ") + inline_text(item);
       return '[' + out + ']';
