@@ -1,0 +1,8 @@
+// Marks what a shared library of Sinew shows.
+#pragma once
+
+#if defined(__GNUC__)
+#define SINEW_API __attribute__((visibility("default")))
+#else
+#define SINEW_API
+#endif
