@@ -27,7 +27,7 @@ Model irregular_box(const Material& material, int cells = 2, double jitter = 0.2
   spec.materials = {material};
   spec.regions = {"all"};
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, spec);
   finish(m);
   return m;
@@ -37,7 +37,7 @@ std::vector<Vec3> forces(const Model& m, const std::vector<Vec3>& x) {
   Workspace workspace(m);
   State state = initial_state(m);
   state.position = x;
-  compute_forces(m, state, workspace);
+  compute_forces(m, initial_controls(m), state, workspace);
   return workspace.force;
 }
 
@@ -163,7 +163,7 @@ TEST(Network, BordersBetweenMaterialsAreAtRest) {
   spec.regions = {"soft", "hard", "classic"};
   for (Index t = 0; t < spec.mesh.tet_count(); ++t) spec.tet_region.push_back(t % 3);
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, spec);
   finish(m);
   for (const Vec3& f : forces(m, m.rest_position)) {
@@ -208,13 +208,13 @@ TEST(Network, PressureIsMinusTheMeanStress) {
     const Model m = irregular_box(material);
     Workspace workspace(m);
     State state = initial_state(m);
-    compute_forces(m, state, workspace);
+    compute_forces(m, initial_controls(m), state, workspace);
     for (const double p : measure_pressure(m, state.position, workspace)) {
       EXPECT_NEAR(p, 0.0, 1e-9 * material.young);
     }
     const double strain = 1e-6;
     state.position = mapped(m.rest_position, (1.0 - strain) * Mat3::Identity());
-    compute_forces(m, state, workspace);
+    compute_forces(m, initial_controls(m), state, workspace);
     const double bulk = material.young / (3.0 * (1.0 - 2.0 * material.poisson));
     for (const double p : measure_pressure(m, state.position, workspace)) {
       EXPECT_NEAR(p, 3.0 * strain * bulk, 1e-4 * strain * bulk);

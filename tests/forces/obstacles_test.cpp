@@ -63,7 +63,7 @@ TEST(ObstacleLaw, OnlyStiffeningIsPositiveSemidefinite) {
 // A box with its floor pinned and two spheres in its top and side.
 Model pressed_box() {
   Model m = test::tissue_box({.law = Law::lloyd, .young = 1e4}, {3, 3, 3});
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   m.pins = {{"floor", test::nodes_at(m, 1, -0.05), {}}};
   Path path;
   path.keys = {{1.0, Vec3(0, -0.02, 0), Vec3::Zero()}};
@@ -132,12 +132,13 @@ TEST(Obstacles, TheListOfTermsHasThem) {
   s.time = 0.5;
   std::vector<Vec3> without(m.rest_position.size(), Vec3::Zero());
   add_obstacle_forces(m, s.position, s.time, without);
-  compute_forces(m, s, w);  // at rest: nothing else acts
+  compute_forces(m, initial_controls(m), s, w);  // at rest: nothing else acts
   for (std::size_t i = 0; i < without.size(); ++i)
     if (m.inverse_mass[i] > 0.0) {
       EXPECT_LT((w.force[i] - without[i]).norm(), 1e-12);
     }
-  EXPECT_EQ(measure_energies(m, s, w).contact, obstacle_energy(m, s.position, s.time));
+  EXPECT_EQ(measure_energies(m, initial_controls(m), s, w).contact,
+            obstacle_energy(m, s.position, s.time));
   EXPECT_GT(obstacle_energy(m, s.position, s.time), 0.0);
 
   // The tangent of the stable step bounds the true one.
@@ -145,8 +146,9 @@ TEST(Obstacles, TheListOfTermsHasThem) {
   for (std::size_t i = 0; i < u.size(); ++i)
     u[i] = m.inverse_mass[i] > 0.0 ? Vec3(random_point(i) - Vec3::Constant(0.5)) : Vec3::Zero();
   prepare_stiffness(m, s.position, w);
-  stiffness_damping_times(m, s.position, 1.0, 0.0, u, Tangent::full, w, full);
-  stiffness_damping_times(m, s.position, 1.0, 0.0, u, Tangent::only_stiffening, w, bound);
+  stiffness_damping_times(m, initial_controls(m), s.position, 1.0, 0.0, u, Tangent::full, w, full);
+  stiffness_damping_times(m, initial_controls(m), s.position, 1.0, 0.0, u, Tangent::only_stiffening,
+                          w, bound);
   double of_full = 0.0, of_bound = 0.0;
   for (std::size_t i = 0; i < u.size(); ++i) {
     of_full += u[i].dot(full[i]);

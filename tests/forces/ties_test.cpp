@@ -108,7 +108,7 @@ TEST(Ties, TheModelsForcesHaveThemInBothPrecisions) {
   std::vector<Vec3> f(s.position.size(), Vec3::Zero());
   add_tie_forces(m, s.position, f);
   Workspace w(m);
-  compute_forces(m, s, w);
+  compute_forces(m, initial_controls(m), s, w);
   for (std::size_t i = 0; i < f.size(); ++i) EXPECT_LT((w.force[i] - f[i]).norm(), 1e-13);
   EXPECT_EQ(elastic_energy(m, s.position, w), tie_energy(m, s.position));
 }

@@ -1,11 +1,11 @@
 #include "sinew/forces/stiffness.h"
 
 #include "sinew/base/parallel.h"
+#include "sinew/forces/grabs.h"
 #include "sinew/forces/network.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/springs.h"
-#include "sinew/forces/tethers.h"
 #include "sinew/forces/ties.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
@@ -16,9 +16,9 @@ void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& w
   if (model.has_volume) compute_volume_pressures(model, x, workspace);
 }
 
-void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double a, double b,
-                             std::span<const Vec3> u, Tangent tangent, Workspace& workspace,
-                             std::span<Vec3> out) {
+void stiffness_damping_times(const Model& model, const Controls& controls, std::span<const Vec3> x,
+                             double a, double b, std::span<const Vec3> u, Tangent tangent,
+                             Workspace& workspace, std::span<Vec3> out) {
   const bool only_stiffening = tangent == Tangent::only_stiffening;
   for (const Range& active : model.active_springs) {
     parallel_for(active.size(), [&](Index i) {
@@ -48,7 +48,7 @@ void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double
   });
   if (!only_stiffening)
     add_obstacle_stiffness_times(model, x, workspace.obstacle_center, a, u, false, out);
-  if (a != 0.0) add_tether_stiffness_times(model, a, u, out);
+  if (a != 0.0) add_grab_stiffness_times(model, controls, a, u, out);
   if (a != 0.0) add_tie_stiffness_times(model, a, u, out);
 }
 

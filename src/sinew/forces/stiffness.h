@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sinew/forces/workspace.h"
-#include "sinew/model/model.h"
+#include "sinew/model/controls.h"
 
 namespace sinew {
 
@@ -21,9 +21,9 @@ void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& w
 // network, volume and obstacles (where compute_forces last saw them), C the dashpots, the
 // viscosity and the drag.
 // Nodes whose motion is given get 0; their u counts.
-void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double a, double b,
-                             std::span<const Vec3> u, Tangent tangent, Workspace& workspace,
-                             std::span<Vec3> out);
+void stiffness_damping_times(const Model& model, const Controls& controls, std::span<const Vec3> x,
+                             double a, double b, std::span<const Vec3> u, Tangent tangent,
+                             Workspace& workspace, std::span<Vec3> out);
 
 // What is in (a K + b C) u besides springs, network and volume, of node i: drag, viscosity and,
 // where only what stiffens counts, obstacles. To be called after prepare_outer_product().

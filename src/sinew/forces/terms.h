@@ -6,15 +6,17 @@
 #include <vector>
 
 #include "sinew/forces/workspace.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
 
 // Fills workspace.force with the total force on every node [N]: springs, dashpots, network, volume,
-// viscosity, gravity, drag, loads and obstacles at state.time, tethers. Pinned nodes and anchors
+// viscosity, gravity, drag, loads and obstacles at state.time, grabs. Pinned nodes and anchors
 // get only what the material pulls. Returns the power [W] that dashpots, viscosity and drag turn
 // into heat.
-double compute_forces(const Model& model, const State& state, Workspace& workspace);
+double compute_forces(const Model& model, const Controls& controls, const State& state,
+                      Workspace& workspace);
 
 // The talk's velocity, v(t) = (x(t+h) - x(t-h)) / 2h = w + a h / 2, with w the half-step velocity
 // before t and h the last step; where the motion is given (pins) the half-step velocity itself.
@@ -26,25 +28,27 @@ std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
 double elastic_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace);
 
 // What the rest state minimises [J]: elastic energy plus that of gravity, and of the loads and
-// obstacles at state.time and the tethers, 0 at the rest positions.
-double potential_energy(const Model& model, const State& state, Workspace& workspace);
+// obstacles at state.time and the grabs, 0 at the rest positions.
+double potential_energy(const Model& model, const Controls& controls, const State& state,
+                        Workspace& workspace);
 
-// Gravity, the loads and obstacles at state.time, and the tethers on the free nodes [N], 0 on the
+// Gravity, the loads and obstacles at state.time, and the grabs on the free nodes [N], 0 on the
 // others.
-std::vector<Vec3> outer_forces(const Model& model, const State& state);
+std::vector<Vec3> outer_forces(const Model& model, const Controls& controls, const State& state);
 
 struct Energies {
   double kinetic = 0.0;     // [J] of the nodes that are free to move, with the talk's velocity
   double elastic = 0.0;     // [J] in springs, network and volume
   double gravity = 0.0;     // [J] of the free nodes, 0 at their rest positions
-  double contact = 0.0;     // [J] between bodies and obstacles or tethers
+  double contact = 0.0;     // [J] between bodies and obstacles or grabs
   double dissipated = 0.0;  // [J] since the start
   double work_in = 0.0;     // [J] since the start
   // What the account leaves unexplained: kinetic + elastic + gravity + contact + dissipated -
   // work_in is constant up to the step's error.
   double total() const { return kinetic + elastic + gravity + contact + dissipated - work_in; }
 };
-Energies measure_energies(const Model& model, const State& state, Workspace& workspace);
+Energies measure_energies(const Model& model, const Controls& controls, const State& state,
+                          Workspace& workspace);
 
 // Current volume of the body's tets over their rest volume [-].
 double volume_ratio(const Model& model, const Body& body, const std::vector<Vec3>& x);

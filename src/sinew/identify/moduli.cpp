@@ -44,7 +44,7 @@ std::vector<Index> surface_nodes(const TetMesh& mesh) {
 
 Model body_alone(const BodySpec& body, bool hold_surface) {
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, body);
   if (hold_surface) m.pins.push_back({"surface", surface_nodes(body.mesh), {}});
   finish(m);
@@ -67,7 +67,7 @@ Mat6 by_tractions(const BodySpec& body, double tolerance) {
     Field f(area.size());
     for (std::size_t a = 0; a < area.size(); ++a) f[a] = unit_stress(k) * area[a];
     Field u(area.size(), Vec3::Zero());
-    solver.solve_tangent(model.rest_position, f, tolerance, u);
+    solver.solve_tangent(initial_controls(model), model.rest_position, f, tolerance, u);
     Mat3 gradient = Mat3::Zero();
     for (std::size_t a = 0; a < area.size(); ++a) gradient += u[a] * area[a].transpose();
     const Mat3 strain = 0.5 * (gradient + gradient.transpose()) / model.bodies[0].rest_volume;
@@ -92,9 +92,10 @@ Mat6 by_displacements(const BodySpec& body, double tolerance) {
     Field u(X.size());
     for (std::size_t a = 0; a < X.size(); ++a) u[a] = unit_strain(k) * X[a];
     const Field none(X.size(), Vec3::Zero());
-    solver.solve_tangent(X, none, tolerance, u);
+    solver.solve_tangent(initial_controls(held), X, none, tolerance, u);
     Field f(X.size());
-    stiffness_damping_times(free, X, 1.0, 0.0, u, Tangent::full, workspace, f);
+    stiffness_damping_times(free, initial_controls(free), X, 1.0, 0.0, u, Tangent::full, workspace,
+                            f);
     Mat3 stress = Mat3::Zero();
     for (std::size_t a = 0; a < X.size(); ++a) stress += f[a] * X[a].transpose();
     stress = 0.5 * (stress + stress.transpose().eval()) / free.bodies[0].rest_volume;

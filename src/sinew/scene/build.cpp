@@ -326,7 +326,7 @@ std::vector<std::string> overlap_warnings(const Model& model) {
 Model build_model(const Scene& scene, BuildReport* report) {
   Model model;
   const std::vector<PlacedBody> bodies = add_bodies(scene, model, report);
-  model.gravity = scene.gravity;
+  model.start_gravity = scene.gravity;
   model.limit_sweeps = scene.limit_sweeps;
   model.limit_tolerance = scene.limit_tolerance;
   if (const auto& g = scene.ground)

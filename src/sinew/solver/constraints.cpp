@@ -127,7 +127,8 @@ Constraints::Constraints(const Model& model, double inertia, double rate, bool f
   if (model.ground) {
     // Single masses have no size but the way they fall in a step.
     const double edge = mean_edge(model);
-    ground_tolerance_ = ground_tolerance * (edge > 0.0 ? edge : model.gravity.norm() / inertia);
+    ground_tolerance_ =
+        ground_tolerance * (edge > 0.0 ? edge : model.start_gravity.norm() / inertia);
     ground_stiffness_.assign(uz(model.body_node_count()), 0.0);
     for (std::size_t i = 0; i < ground_stiffness_.size(); ++i) {
       if (compliance[i] > 0.0) ground_stiffness_[i] = ratio / compliance[i];

@@ -52,15 +52,15 @@ class Subspace {
       const Field right = mass_times(u);
       const double guess = omega2_.size() > 0 ? 1.0 / omega2_[static_cast<Eigen::Index>(k)] : 0.0;
       for (Vec3& value : u) value *= guess;
-      solver_.solve_tangent(x_, right, 1e-8, u);
+      solver_.solve_tangent(initial_controls(model_), x_, right, 1e-8, u);
     }
     const auto size = static_cast<Eigen::Index>(block_.size());
     Eigen::MatrixXd k(size, size), m(size, size);
     prepare_stiffness(model_, x_, solver_.workspace());
     Field ku(x_.size());
     for (std::size_t a = 0; a < block_.size(); ++a) {
-      stiffness_damping_times(model_, x_, 1.0, 0.0, block_[a], Tangent::full, solver_.workspace(),
-                              ku);
+      stiffness_damping_times(model_, initial_controls(model_), x_, 1.0, 0.0, block_[a],
+                              Tangent::full, solver_.workspace(), ku);
       const Field mu = mass_times(block_[a]);
       for (std::size_t b = 0; b < block_.size(); ++b) {
         k(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(a)) = dot(block_[b], ku);

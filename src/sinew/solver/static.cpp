@@ -149,11 +149,11 @@ void put_on_ground(const Model& model, State& state) {
 
 // What ties a body that only the ground holds to its place [1/s2]: see StaticSolver::settle. A
 // hundredth of the edge of a mean tet under the body's own weight.
-double nudge(const Model& model) {
+double nudge(const Model& model, const Controls& controls) {
   if (!model.ground) return 0.0;
   const std::vector<Index> unheld = unheld_groups(model);
   if (std::all_of(unheld.begin(), unheld.end(), [](Index g) { return g < 0; })) return 0.0;
-  return 0.01 * model.gravity.norm() / mean_edge(model);
+  return 0.01 * controls.gravity.norm() / mean_edge(model);
 }
 
 }  // namespace
@@ -161,9 +161,8 @@ double nudge(const Model& model) {
 StaticSolver::StaticSolver(const Model& model)
     : model_(model),
       workspace_(model),
-      nudge_(nudge(model)),
       linear_(model),
-      constraints_(model, 10.0 * model.gravity.norm() / mean_edge(model), 0.0, false) {
+      constraints_(model, 10.0 * model.start_gravity.norm() / mean_edge(model), 0.0, false) {
   double stiffest = 0.0;
   for (std::size_t t = 0; t < model.tets.size(); ++t) {
     double bulk = model.tet_bulk[t];
@@ -183,8 +182,9 @@ StaticSolver::StaticSolver(const Model& model)
   }
 }
 
-int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Vec3>& rhs,
-                                double tolerance, std::vector<Vec3>& u) {
+int StaticSolver::solve_tangent(const Controls& controls, const std::vector<Vec3>& x,
+                                const std::vector<Vec3>& rhs, double tolerance,
+                                std::vector<Vec3>& u) {
   double each = 1e-4;  // what single precision takes away in one go
   constexpr int most = 20000;
   Field r, p, q(u.size());
@@ -192,9 +192,9 @@ int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Ve
   double before = no_limit;
   int products = 0;
   prepare_stiffness(model_, x, workspace_);
-  linear_.assemble(Objective{model_}, x, workspace_);
+  linear_.assemble(Objective{model_, controls}, x, workspace_);
   while (products < most) {
-    stiffness_damping_times(model_, x, 1.0, 0.0, u, Tangent::full, workspace_, q);
+    stiffness_damping_times(model_, controls, x, 1.0, 0.0, u, Tangent::full, workspace_, q);
     ++products;
     r = rhs;
     keep_free(model_, r);
@@ -225,7 +225,7 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
   constraints_.start(state, nullptr, 0.0);
   if (!constraints_.empty()) objective.constraints = &constraints_;
   objective.inertia = nudge_;
-  const Field outer = outer_forces(model_, state);
+  const Field outer = outer_forces(model_, objective.controls, state);
   const double goal = options.tolerance * std::sqrt(dot(outer, outer));
   NewtonReport report;
   for (;;) {
@@ -251,7 +251,8 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
 
 // Brings the pins to where they are at this share of the way between two times; the free nodes
 // follow as the tangent spreads their motion. Returns the Hessian products.
-int StaticSolver::move_pins_to(double start_time, double time, double share, State& state) {
+int StaticSolver::move_pins_to(const Controls& controls, double start_time, double time,
+                               double share, State& state) {
   Field move(state.position.size(), Vec3::Zero());
   for (const Pin& pin : model_.pins) {
     for (const Index node : pin.nodes) {
@@ -261,23 +262,26 @@ int StaticSolver::move_pins_to(double start_time, double time, double share, Sta
   }
   int products = 0;
   if (dot(move, move) > 0.0) {
-    products = solve_tangent(state.position, Field(move.size(), Vec3::Zero()), 1e-2, move);
+    products =
+        solve_tangent(controls, state.position, Field(move.size(), Vec3::Zero()), 1e-2, move);
   }
   add(state.position, 1.0, move);
   return products;
 }
 
-StaticReport StaticSolver::solve(double time, const StaticOptions& options, State& state) {
+StaticReport StaticSolver::solve(const Controls& controls, double time,
+                                 const StaticOptions& options, State& state) {
   StaticReport report;
   const double start_time = state.time;
+  nudge_ = nudge(model_, controls);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
   state.last_step = 0.0;
   state.time = time;  // of the loads; the pins follow below
-  refuse_unheld_bodies(model_, outer_forces(model_, state));
-  compute_forces(model_, state, workspace_);
+  refuse_unheld_bodies(model_, outer_forces(model_, controls, state));
+  compute_forces(model_, controls, state, workspace_);
   if (find_tangled(model_, workspace_) > 0) {
     put_tangled_bodies_at_rest(model_, workspace_, state);
-    compute_forces(model_, state, workspace_);
+    compute_forces(model_, controls, state, workspace_);
   }
   if (nudge_ > 0.0) put_on_ground(model_, state);
 
@@ -295,7 +299,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
   while (done < 1.0) {
     const double next = done + length > 1.0 - 1e-9 ? 1.0 : done + length;
     const State before = state;
-    report.products += move_pins_to(start_time, time, next, state);
+    report.products += move_pins_to(controls, start_time, time, next, state);
     ++report.load_steps;
     const auto account = [&](const NewtonReport& r) {
       report.newton += r.newton;
@@ -308,7 +312,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
       return r.rests || r.stopped;
     };
     const auto newton = [&](const Model& model, double tolerance) {
-      const Objective objective{model, &dead_force, gradual ? 1.0 - next : 0.0};
+      const Objective objective{model, controls, &dead_force, gradual ? 1.0 - next : 0.0};
       NewtonOptions o{tolerance, options.max_newton, options.stop, {}};
       if (options.on_progress) {
         o.on_progress = [&, before_this = report.newton](const NewtonProgress& p) {
@@ -340,7 +344,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
     state = before;
     if (cuts == cuts_before_falling && falls.newton == 0) {
       const StaticProgress now{report.load_steps, 1.0, report.newton, 0.0};
-      falls = fall_to_rest(start_time, time, options, now, state);
+      falls = fall_to_rest(controls, start_time, time, options, now, state);
       if (account(falls)) break;
     }
     state = before;

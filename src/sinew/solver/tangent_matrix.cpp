@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "sinew/base/sort_by_key.h"
+#include "sinew/forces/grabs.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
-#include "sinew/forces/tethers.h"
 #include "sinew/forces/ties.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
@@ -399,12 +399,13 @@ void TangentMatrix::assemble_contacts(const Objective& objective) {
 void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
                                    const Workspace& workspace) {
   const Model& model = objective.model;
-  std::vector<double> tether(model.tethers.empty() ? 0 : free_.size(), 0.0);
-  for_each_tethered(model, [&](Index node, double k, const Vec3&) { tether[uz(node)] += k; });
+  std::vector<double> grabbed(objective.controls.grabs.empty() ? 0 : free_.size(), 0.0);
+  for_each_grabbed(model, objective.controls,
+                   [&](Index node, double k, const Vec3&) { grabbed[uz(node)] += k; });
   parallel_for(model.node_count(), [&](Index i) {
     const auto n = uz(i);
     if (free_[n] == 0) return;
-    const double weight = (tether.empty() ? 0.0 : tether[n]) +
+    const double weight = (grabbed.empty() ? 0.0 : grabbed[n]) +
                           (objective.inertia + objective.rate * model.drag[n]) * model.mass[n];
     Mat3 own = weight * Mat3::Identity();
     add_obstacle_stiffness(model, x[n], workspace.obstacle_center, i, own);
