@@ -119,7 +119,7 @@ void ConjugateGradients(benchmark::State& state) {
   const Objective objective{
       .model = model, .controls = initial_controls(model), .inertia = step ? 3600.0 : 0.0};
   prepare_stiffness(model, model.rest_position, workspace);
-  solver.assemble(objective, model.rest_position, workspace);
+  solver.assemble(objective, model.rest_position, 0.0, workspace);
   const Field weight = outer_forces(model, initial_controls(model), initial_state(model));
   Field p;
   int products = 0;

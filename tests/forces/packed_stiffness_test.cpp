@@ -24,7 +24,7 @@ double mismatch(const Model& m, const std::vector<Vec3>& x, double a, double b) 
     if (m.inverse_mass[i] > 0.0) u[i] = Vec3(std::sin(t), std::sin(1.7 * t), std::cos(2.3 * t));
   }
   prepare_stiffness(m, x, w);
-  stiffness_damping_times(m, initial_controls(m), x, a, b, u, Tangent::only_stiffening, w, plain);
+  stiffness_damping_times({m, initial_controls(m), x}, a, b, u, Tangent::only_stiffening, w, plain);
   const Controls controls = initial_controls(m);
   auto product = PackedStiffness::at(m, controls, x, w);
   if (!product) return 1.0;

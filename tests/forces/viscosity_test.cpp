@@ -50,7 +50,7 @@ Mat3 edges_of(const Field& x, const Tet& t) {
 Field pulls(const Model& m, const Field& x, const Field& v) {
   Workspace workspace(m);
   Field out(x.size());
-  stiffness_damping_times(m, initial_controls(m), x, 0.0, 1.0, v, Tangent::full, workspace, out);
+  stiffness_damping_times({m, initial_controls(m), x}, 0.0, 1.0, v, Tangent::full, workspace, out);
   for (Vec3& f : out) f = -f;
   return out;
 }

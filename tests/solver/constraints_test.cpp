@@ -154,10 +154,10 @@ TEST(Constraints, ForceAndTangentAreTheDerivativesOfTheEnergy) {
   // The product takes the curvature of the volumes from the material's own: with and without.
   std::vector<Vec3> with(u.size()), without(u.size());
   const std::vector<Vec3> x = at(0.0);
-  stiffness_damping_times(c.model, initial_controls(c.model), x, 1.0, 0.0, u, Tangent::full,
+  stiffness_damping_times({c.model, initial_controls(c.model), x}, 1.0, 0.0, u, Tangent::full,
                           workspace, without);
   constraints.linearise(x, workspace);
-  stiffness_damping_times(c.model, initial_controls(c.model), x, 1.0, 0.0, u, Tangent::full,
+  stiffness_damping_times({c.model, initial_controls(c.model), x}, 1.0, 0.0, u, Tangent::full,
                           workspace, with);
   constraints.add_stiffness_times(u, workspace, with);
   const std::vector<Vec3> plus = force(e), minus = force(-e);

@@ -57,13 +57,13 @@ double difference(const Model& m, double inertia, double rate) {
                       .lag = &lag};
   compute_forces(m, initial_controls(m), s, workspace);
   TangentMatrix matrix(m);
-  matrix.assemble(objective, s.position, workspace);
+  matrix.assemble(objective, s.position, 0.0, workspace);
 
   const Field u = noise(m, 1.0, 2);
   Field plain(u.size()), damped(u.size());
-  stiffness_damping_times(m, initial_controls(m), s.position, 1.0, 0.0, u, Tangent::full, workspace,
+  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, u, Tangent::full, workspace,
                           plain);
-  stiffness_damping_times(m, initial_controls(m), lag, 0.0, 1.0, u, Tangent::full, workspace,
+  stiffness_damping_times({m, initial_controls(m), lag}, 0.0, 1.0, u, Tangent::full, workspace,
                           damped);
   Field4 u4(u.size()), fast(u.size());
   for (std::size_t i = 0; i < u.size(); ++i) {
@@ -115,7 +115,7 @@ int iterations(Index k, double young, double poisson, double inertia) {
                       .inertia = inertia,
                       .rate = 0.0,
                       .lag = &m.rest_position};
-  linear.assemble(objective, s.position, workspace);
+  linear.assemble(objective, s.position, 0.0, workspace);
   Field p;
   return linear.solve(outer_forces(m, initial_controls(m), s), 1e-3, 1000, {}, p);
 }
@@ -142,13 +142,13 @@ TEST(LinearSolver, GivesTheSolutionToItsForcing) {
   const State s = initial_state(m);
   compute_forces(m, initial_controls(m), s, workspace);
   LinearSolver linear(m);
-  linear.assemble(Objective{m, initial_controls(m)}, s.position, workspace);
+  linear.assemble(Objective{m, initial_controls(m)}, s.position, 0.0, workspace);
   const Field f = outer_forces(m, initial_controls(m), s);
   Field p;
   for (const double forcing : {1e-1, 1e-2, 1e-3}) {  // single precision reaches 3e-4 here
     linear.solve(f, forcing, 1000, {}, p);
     Field back(p.size());
-    stiffness_damping_times(m, initial_controls(m), s.position, 1.0, 0.0, p, Tangent::full,
+    stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full,
                             workspace, back);
     add(back, -1.0, f);
     EXPECT_LT(std::sqrt(dot(back, back)), 1.2 * forcing * std::sqrt(dot(f, f)));
@@ -163,14 +163,14 @@ TEST(LinearSolver, ABodyThatNothingHoldsIsSolvedUpToItsMotion) {
   const State s = initial_state(m);
   compute_forces(m, initial_controls(m), s, workspace);
   LinearSolver linear(m);
-  linear.assemble(Objective{m, initial_controls(m)}, s.position, workspace);
+  linear.assemble(Objective{m, initial_controls(m)}, s.position, 0.0, workspace);
   // Forces that cancel: what the tangent makes of a displacement.
   Field f(m.rest_position.size());
-  stiffness_damping_times(m, initial_controls(m), s.position, 1.0, 0.0, noise(m, 1.0, 3),
+  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, noise(m, 1.0, 3),
                           Tangent::full, workspace, f);
   Field p, back(f.size());
   linear.solve(f, 1e-3, 1000, {}, p);
-  stiffness_damping_times(m, initial_controls(m), s.position, 1.0, 0.0, p, Tangent::full, workspace,
+  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full, workspace,
                           back);
   add(back, -1.0, f);
   EXPECT_LT(std::sqrt(dot(back, back)), 2e-3 * std::sqrt(dot(f, f)));

@@ -149,10 +149,10 @@ TEST(Static, TangentSolveReachesItsTolerance) {
   StaticSolver solver(m);
   std::vector<Vec3> rhs(m.rest_position.size(), Vec3(0.0, -0.01, 0.0));
   std::vector<Vec3> u(rhs.size(), Vec3::Zero());
-  solver.solve_tangent(initial_controls(m), m.rest_position, rhs, 1e-8, u);
+  solver.solve_tangent({m, initial_controls(m), m.rest_position}, rhs, 1e-8, u);
   std::vector<Vec3> Ku(rhs.size());
   prepare_stiffness(m, m.rest_position, solver.workspace());
-  stiffness_damping_times(m, initial_controls(m), m.rest_position, 1.0, 0.0, u, Tangent::full,
+  stiffness_damping_times({m, initial_controls(m), m.rest_position}, 1.0, 0.0, u, Tangent::full,
                           solver.workspace(), Ku);
   double error = 0.0, size = 0.0;
   for (std::size_t i = 0; i < u.size(); ++i) {

@@ -5,10 +5,8 @@
 #include <numeric>
 
 #include "sinew/base/parallel.h"
-#include "sinew/forces/grabs.h"
 #include "sinew/forces/packed.h"
 #include "sinew/forces/stiffness.h"
-#include "sinew/forces/ties.h"
 
 namespace sinew {
 namespace {
@@ -80,8 +78,7 @@ void PackedStiffness::times(double a, double b, std::span<const Vec3> u, std::sp
                  : Vec3((base_force_[n] - out[n]) / s +
                         outer_product(model_, a, b, u[n], i, Tangent::only_stiffening, workspace_));
   });
-  add_grab_stiffness_times(model_, controls_, a, u, out);
-  add_tie_stiffness_times(model_, a, u, out);
+  add_term_products({model_, controls_, x_}, Tangent::only_stiffening, a, u, out);
 }
 
 }  // namespace sinew

@@ -106,7 +106,7 @@ void Hands::hold(const Model& model, Controls& controls, State& state, double st
 
 // Writes the grabs. What that changes in their energy is work of the hands.
 void Hands::apply(const Model& model, Controls& controls, State& state) const {
-  const double before = grab_energy(model, controls, state.position);
+  const double before = GrabTerm::energy({model, controls, state.position, state.time});
   controls.grabs.clear();
   for (const Hand& h : hands_) {
     if (h.nodes.empty()) continue;
@@ -122,7 +122,7 @@ void Hands::apply(const Model& model, Controls& controls, State& state) const {
     }
     controls.grabs.push_back(std::move(grab));
   }
-  state.energy.work_in += grab_energy(model, controls, state.position) - before;
+  state.energy.work_in += GrabTerm::energy({model, controls, state.position, state.time}) - before;
 }
 
 std::vector<HandStatus> Hands::status(const Model& model, const Controls& controls,

@@ -77,7 +77,7 @@ ImplicitStepper::ImplicitStepper(const Model& model)
 void ImplicitStepper::prepare(double h, const Controls& controls, const ImplicitOptions& options) {
   if (options.scheme == Scheme::sdirk2) h *= sdirk2_share;
   linear_.factor({.model = model_, .controls = controls, .inertia = 1.0 / (h * h), .rate = 1.0 / h},
-                 workspace_);
+                 0.0, workspace_);
 }
 
 // Backward Euler over h from the positions `from` with `velocity`, dashpots in their directions at

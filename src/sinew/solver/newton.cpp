@@ -54,7 +54,7 @@ Field way(const Objective& objective, const State& state) {
 // out = C u, dashpots and viscosity as at objective.lag, and drag.
 void damping_times(const Objective& objective, const Field& u, Workspace& workspace, Field& out) {
   out.resize(u.size());
-  stiffness_damping_times(objective.model, objective.controls, *objective.lag, 0.0, 1.0, u,
+  stiffness_damping_times({objective.model, objective.controls, *objective.lag}, 0.0, 1.0, u,
                           Tangent::full, workspace, out);
 }
 
@@ -244,7 +244,7 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
     const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.3);
     // Forces in single precision leave no gradients of the tets behind.
     if (workspace.packed) prepare_stiffness(objective.model, state.position, workspace);
-    linear.assemble(objective, state.position, workspace);
+    linear.assemble(objective, state.position, state.time, workspace);
     report.products += linear.solve(f, forcing, most_products, deadline, p);
     ++report.newton;
     if (!line_search(objective, p, options.deadline.has_value(), workspace, f, state))

@@ -9,11 +9,9 @@
 #include <optional>
 
 #include "sinew/base/parallel.h"
-#include "sinew/forces/grabs.h"
-#include "sinew/forces/obstacles.h"
 #include "sinew/forces/packed_stiffness.h"
 #include "sinew/forces/stiffness.h"
-#include "sinew/forces/ties.h"
+#include "sinew/forces/terms.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
@@ -47,7 +45,7 @@ class ScaledTangent {
     if (packed_) {
       packed_->times(a, b, scratch_, y);
     } else {
-      stiffness_damping_times(model_, controls_, x_, a, b, scratch_, Tangent::only_stiffening,
+      stiffness_damping_times({model_, controls_, x_}, a, b, scratch_, Tangent::only_stiffening,
                               workspace_, y);
     }
     scale_nodes(model_, y);
@@ -185,18 +183,16 @@ std::vector<double> row_sums(const Model& model, const Field& x, const Workspace
 double guaranteed_step(const Model& model, const Controls& controls, const Field& x,
                        const Workspace& workspace, Index& stiffest) {
   std::vector<double> rows = row_sums(model, x, workspace);
-  for_each_grabbed(model, controls,
-                   [&](Index node, double k, const Vec3&) { rows[uz(node)] += k; });
-  for_each_tie_pair(model, [&](Index i, Index j, double k) {
-    rows[uz(i)] += 2.0 * std::abs(k);
-    rows[uz(j)] += 2.0 * std::abs(k);
+  for_each_type(Terms{}, [&](auto term) {
+    if constexpr (!Bounded<decltype(term)>)
+      add_row_sums(term, {model, controls, x}, Tangent::only_stiffening, rows);
   });
   const std::vector<double> viscous_rows = viscous_row_sums(model, x);
   double h = std::numeric_limits<double>::infinity();
   double highest = 0.0;
   for (Index i = 0; i < model.node_count(); ++i) {
     const auto n = uz(i);
-    double k = rows[n] + largest_obstacle_stiffness(model, i);
+    double k = rows[n] + most_stiffness(model, i);
     double c = model.drag[n] * model.mass[n] + viscous_rows[n];
     for (Index e = model.spring_start[n]; e < model.spring_start[n + 1]; ++e) {
       const Index spring = model.node_spring[uz(e)] >> 1;

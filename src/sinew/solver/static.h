@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 
+#include "sinew/forces/term.h"
 #include "sinew/forces/workspace.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
@@ -65,11 +66,11 @@ class StaticSolver {
   StaticReport solve(const Controls& controls, double time, const StaticOptions& options,
                      State& state);
 
-  // Solves K u = rhs for the free nodes with the tangent at positions x by conjugate gradients, to
+  // Solves K u = rhs for the free nodes with the tangent there by conjugate gradients, to
   // |K u - rhs| <= tolerance |rhs|; u of the others is kept as given and acts as a prescribed
   // displacement. Returns the products taken.
-  int solve_tangent(const Controls& controls, const std::vector<Vec3>& x,
-                    const std::vector<Vec3>& rhs, double tolerance, std::vector<Vec3>& u);
+  int solve_tangent(const Configuration& at, const std::vector<Vec3>& rhs, double tolerance,
+                    std::vector<Vec3>& u);
 
   Workspace& workspace() { return workspace_; }
 

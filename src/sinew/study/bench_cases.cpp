@@ -295,7 +295,7 @@ std::optional<Timing> BenchSubject::linear(const BenchCase& what, const TimerOpt
   Field load = outer_forces(m, controls, initial_state(m));
   if (what.kernel == Kernel::iteration) {
     LinearSolver solver(m);
-    solver.assemble(objective, x, workspace);
+    solver.assemble(objective, x, 0.0, workspace);
     Field p;
     const auto solve = [&] { row.products = solver.solve(load, residual, 1000, {}, p); };
     const auto time = measure(
@@ -306,10 +306,10 @@ std::optional<Timing> BenchSubject::linear(const BenchCase& what, const TimerOpt
     return time;
   }
   TangentMatrix matrix(m);
-  matrix.assemble(objective, x, workspace);
+  matrix.assemble(objective, x, 0.0, workspace);
   if (what.kernel == Kernel::assembly) {
     return measure(
-        options, [] {}, [&] { matrix.assemble(objective, x, workspace); });
+        options, [] {}, [&] { matrix.assemble(objective, x, 0.0, workspace); });
   }
   Field4 u(load.size()), out(load.size());
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = Float4(load[i]);
