@@ -89,6 +89,8 @@ struct Probe {
 };
 
 struct Model {
+  int version = 0;  // one more after every change of topology (model/topology_change.h)
+
   // --- nodes: those of the bodies, body by body, then the anchors ---
   std::vector<Vec3> rest_position;   // X [m] (nodes), where the body is placed
   std::vector<double> mass;          // m [kg] (nodes), lumped: a quarter of each tet's; anchors 0
