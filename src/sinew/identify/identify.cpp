@@ -38,7 +38,7 @@ Material material_of(const AskedMaterial& asked, const std::string& law) {
 
 Model free_body(const BodySpec& body) {
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, body);
   return m;
 }
@@ -51,7 +51,7 @@ double time_of_step(const Model& model, double h) {
   std::vector<double> times;
   for (int k = 0; k < 25; ++k) {
     const Clock::time_point start = Clock::now();
-    verlet_step(model, h, state, workspace);
+    verlet_step(model, initial_controls(model), h, state, workspace);
     times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
   }
   std::nth_element(times.begin(), times.begin() + 12, times.end());
@@ -99,8 +99,8 @@ StressCurve measure_curve(const BodySpec& body, const AskedMaterial& asked) {
     options.tolerance = 1e-4;
     double stress = std::numeric_limits<double>::quiet_NaN();
     try {
-      solver.solve(1.0, options, state);
-      compute_forces(model, state, solver.workspace());
+      solver.solve(initial_controls(model), 1.0, options, state);
+      compute_forces(model, initial_controls(model), state, solver.workspace());
       stress = 0.0;
       for (const Index i : surface.nodes) {
         stress -= solver.workspace().force[uz(i)].z() * model.rest_position[uz(i)].z();
@@ -145,7 +145,8 @@ LawIdentity identify_law(const TetMesh& mesh, const AskedMaterial& asked, const 
   Model model = free_body(body);
   finish(model);
   Workspace workspace(model);
-  identity.stable_step = find_stable_step(model, model.rest_position, workspace).step;
+  identity.stable_step =
+      find_stable_step(model, initial_controls(model), model.rest_position, workspace).step;
   identity.step_seconds = time_of_step(model, 0.5 * identity.stable_step);
   if (with_curve) identity.curve = measure_curve(body, asked);
   return identity;

@@ -76,13 +76,13 @@ bool knows_implicit(const Model& model) {
 }
 
 // Of two trial steps the faster one [s].
-double wall_of_a_step(Stepping& stepping, RunState run) {
+double wall_of_a_step(Stepping& stepping, const Controls& controls, RunState run) {
   static const std::atomic<bool> after_one_step{true};
   double least = no_limit;
   for (int i = 0; i < 3; ++i) {
     const Clock::time_point start = Clock::now();
     try {
-      stepping.advance_frame(run, &after_one_step);
+      stepping.advance_frame(controls, run, &after_one_step);
     } catch (const Error&) {
       return no_limit;
     }
@@ -109,7 +109,7 @@ void Simulation::report(const Error& error) {
 }
 
 void Simulation::let_go() {
-  hands_.release_all(*model_, run_.state);
+  hands_.release_all(*model_, controls_, run_.state);
   ball_.remove(*model_, run_.state);
 }
 
@@ -117,7 +117,7 @@ void Simulation::let_go() {
 // explicit ones cannot keep pace with the clock and these are less work. Compared bodies take the
 // same.
 std::unique_ptr<Stepping> Simulation::choose_steps(Scene& stepped, const Model& model,
-                                                   RunState& run) const {
+                                                   const Controls& controls, RunState& run) const {
   const auto implicit = [&](std::string reason) {
     stepped.stepper = "implicit";
     stepped.scheme = "backward-euler";
@@ -126,18 +126,18 @@ std::unique_ptr<Stepping> Simulation::choose_steps(Scene& stepped, const Model& 
     anew.state = run.state;
     anew.frame = run.frame;
     run = std::move(anew);
-    auto stepping = std::make_unique<Stepping>(stepped, model, run);
+    auto stepping = std::make_unique<Stepping>(stepped, model, controls, run);
     run.stepper_reason = std::move(reason);
     return stepping;
   };
   const bool free = leaves_the_choice(stepped) && knows_implicit(model);
   if (free && leader_ != nullptr && leader_->run_.stepper == "implicit") return implicit("");
-  auto stepping = std::make_unique<Stepping>(stepped, model, run);
+  auto stepping = std::make_unique<Stepping>(stepped, model, controls, run);
   if (!free || leader_ != nullptr) return stepping;
   if (fell_behind_) return implicit("explicit steps fell behind the clock");
   const double steps = 1.0 / (frames_per_second * run.target_step);
   if (steps < steps_of_implicit) return stepping;
-  const double wall = steps * wall_of_a_step(*stepping, run);
+  const double wall = steps * wall_of_a_step(*stepping, controls, run);
   if (wall * frames_per_second < most_load) return stepping;
   return implicit(fmt::format("explicit steps, {:.0f} a frame, would take {:.1f} times real time",
                               steps, wall * frames_per_second));
@@ -152,6 +152,7 @@ void Simulation::rebuild(const Scene& scene, const State* keep) {
   stepped.budget_ms.reset();
   if (stepped.stepper == "static") stepped.stepper = "implicit";
   auto model = std::make_unique<Model>(build_model(stepped));
+  Controls controls = initial_controls(*model);  // the hands take hold below
   RunState run;
   run.state = initial_state(*model);
   if (keep != nullptr && keep->position.size() == run.state.position.size()) {
@@ -160,17 +161,18 @@ void Simulation::rebuild(const Scene& scene, const State* keep) {
     calm_softened_bodies(*model_, *model, run.state);
     run.frame = static_cast<std::int64_t>(std::floor(keep->time / interval_of(stepped) + 1e-9));
   }
-  auto stepping = choose_steps(stepped, *model, run);
+  auto stepping = choose_steps(stepped, *model, controls, run);
   scene_ = scene;
   stepped_ = std::move(stepped);
   stepping_ = std::move(stepping);  // before the model that it refers to goes
   finder_.reset();                  // it knows the old one
   model_ = std::move(model);
+  controls_ = std::move(controls);
   if (ContactFinder::anything_to_find(*model_)) finder_ = std::make_unique<ContactFinder>(*model_);
   run_ = std::move(run);
   good_ = run_.state;
   const double stable = run_.stable_step > 0.0 ? run_.stable_step : no_limit;
-  hands_.hold(*model_, run_.state, stable);
+  hands_.hold(*model_, controls_, run_.state, stable);
   ball_.hold(*model_, run_.state, stable);
   ahead_ = false;
   speed_ = last_speed_ = {};
@@ -222,7 +224,7 @@ bool Simulation::advance(Clock::time_point deadline, const std::atomic<bool>* hu
   if (!ahead_) ahead_ = steps(deadline, hurry, false);
   if (!ahead_ || !catch_up(deadline, hurry)) return false;
   ahead_ = false;
-  hands_.follow(*model_, run_.state, size());
+  hands_.follow(*model_, controls_, run_.state, size());
   ball_.follow(*model_, run_.state, interval_of(stepped_));
   keep_pace();
   return true;
@@ -254,7 +256,7 @@ bool Simulation::steps(Clock::time_point deadline, const std::atomic<bool>* hurr
   bool finished = false;
   try {
     do {
-      finished = stepping_->advance_frame(run_, &after_one_step);
+      finished = stepping_->advance_frame(controls_, run_, &after_one_step);
     } while (!finished && may_go_on());
   } catch (const Error& e) {
     running_ = false;
@@ -319,7 +321,7 @@ Status Simulation::status() {
         static_cast<double>(v.products) / static_cast<double>(std::max<std::int64_t>(1, v.newton));
   }
   s.limit = limiting();
-  s.energy = measure_energies(*model_, run_.state, stepping_->workspace());
+  s.energy = measure_energies(*model_, controls_, run_.state, stepping_->workspace());
   double rest = 0.0;
   double volume = 0.0;
   for (const Body& body : model_->bodies) {
@@ -333,7 +335,7 @@ Status Simulation::status() {
   s.contacts = run_.contacts;
   s.deepest = run_.deepest;
   s.inverted_tets = count_inverted(*model_, run_.state.position);
-  s.hands = hands_.status(*model_, run_.state);
+  s.hands = hands_.status(*model_, controls_, run_.state);
   for (const ProbeReading& p : read_probes(*model_, run_.state.position)) {
     s.probes.push_back(p.displacement);
   }

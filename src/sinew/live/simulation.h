@@ -85,7 +85,8 @@ class Simulation {
 
   void change(const std::vector<std::string>& overrides);
   void rebuild(const Scene& scene, const State* keep);
-  std::unique_ptr<Stepping> choose_steps(Scene& stepped, const Model& model, RunState& run) const;
+  std::unique_ptr<Stepping> choose_steps(Scene& stepped, const Model& model,
+                                         const Controls& controls, RunState& run) const;
   void remember_parameters();
   void show(const Cut& cut, bool springs);
   void let_go();
@@ -101,6 +102,7 @@ class Simulation {
   Scene scene_;    // as its document says it
   Scene stepped_;  // the same, as it is stepped here
   std::unique_ptr<Model> model_;
+  Controls controls_;
   std::unique_ptr<ContactFinder> finder_;  // of what frames mark; null: nothing but the ground can
   std::unique_ptr<Stepping> stepping_;
   RunState run_;

@@ -112,8 +112,9 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
   frames_ = open_table(folder_ / "frames.csv", frames_header, rows);
 }
 
-void Recorder::record(RunState& run, Workspace& workspace) {
-  const Energies e = measure_energies(model_, run.state, workspace);  // also fills the forces
+void Recorder::record(const Controls& controls, RunState& run, Workspace& workspace) {
+  const Energies e =
+      measure_energies(model_, controls, run.state, workspace);  // also fills the forces
   run.frame_times.push_back(run.state.time);
   if (vtu_) {
     io::write_file(folder_ / frame_file(scene_, run.frame_times.size() - 1),

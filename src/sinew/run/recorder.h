@@ -21,7 +21,7 @@ class Recorder {
            const RunState& run);
 
   // Writes the frame that the state now stands at and appends its time to run.frame_times.
-  void record(RunState& run, Workspace& workspace);
+  void record(const Controls& controls, RunState& run, Workspace& workspace);
 
  private:
   void write_collection(const RunState& run) const;

@@ -56,6 +56,7 @@ class Runner {
          std::vector<std::string> warnings, const RunOptions& options)
       : scene_(scene),
         model_(model),
+        controls_(initial_controls(model)),
         meshes_(std::move(meshes)),
         warnings_(std::move(warnings)),
         options_(options) {}
@@ -64,7 +65,7 @@ class Runner {
     const Clock::time_point start = Clock::now();
     const double wall_before = run.wall_seconds;
     const double sim_before = run.state.time;
-    Stepping stepping(scene_, model_, run);
+    Stepping stepping(scene_, model_, controls_, run);
     if (options_.on_stepper && !run.stepper_reason.empty()) {
       options_.on_stepper(run.stepper, run.stepper_reason);
     }
@@ -74,7 +75,8 @@ class Runner {
       recorder.emplace(scene_, model_, options_.out, run);
     }
     if (run.frame_times.empty()) {
-      run.start_energy = measure_energies(model_, run.state, stepping.workspace()).total();
+      run.start_energy =
+          measure_energies(model_, controls_, run.state, stepping.workspace()).total();
       record(recorder, run, stepping.workspace());
       save(run);
     }
@@ -84,7 +86,7 @@ class Runner {
     Clock::time_point saved = Clock::now();
     try {
       while (run.frame < stepping.frame_count()) {
-        const bool finished = stepping.advance_frame(run, options_.stop);
+        const bool finished = stepping.advance_frame(controls_, run, options_.stop);
         run.wall_seconds = wall_before + seconds_since(start);
         if (finished) {
           record(recorder, run, stepping.workspace());
@@ -125,7 +127,7 @@ class Runner {
     run.peak_inverted_tets =
         std::max(run.peak_inverted_tets, count_inverted(model_, run.state.position));
     if (recorder) {
-      recorder->record(run, workspace);
+      recorder->record(controls_, run, workspace);
     } else {
       run.frame_times.push_back(run.state.time);
     }
@@ -140,7 +142,7 @@ class Runner {
   }
 
   Summary finish_summary(RunState& run, Workspace& workspace, RunStatus status) const {
-    Summary s = summarize(scene_, model_, meshes_, run, workspace);
+    Summary s = summarize(scene_, model_, controls_, meshes_, run, workspace);
     s.status = status == RunStatus::finished      ? "finished"
                : status == RunStatus::interrupted ? "interrupted"
                                                   : "diverged";
@@ -176,6 +178,7 @@ class Runner {
 
   const Scene& scene_;
   const Model& model_;
+  const Controls controls_;
   std::vector<std::string> meshes_;
   std::vector<std::string> warnings_;
   const RunOptions& options_;

@@ -82,8 +82,8 @@ std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3
   return readings;
 }
 
-Summary summarize(const Scene& scene, const Model& model, const std::vector<std::string>& meshes,
-                  RunState& run, Workspace& workspace) {
+Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
+                  const std::vector<std::string>& meshes, RunState& run, Workspace& workspace) {
   const std::vector<Vec3>& x = run.state.position;
   Summary s;
   s.scene = scene.name;
@@ -120,7 +120,7 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.frames = run.frame;
   s.sim_seconds = run.state.time;
   s.wall_seconds = run.wall_seconds;
-  s.energy = measure_energies(model, run.state, workspace);
+  s.energy = measure_energies(model, controls, run.state, workspace);
   s.energy_drift = s.energy.total() - run.start_energy;
   const StretchRange range = measure_stretch(model, x);
   s.max_stretch = range.stretch;

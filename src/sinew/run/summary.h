@@ -89,8 +89,8 @@ std::int64_t count_inverted(const Model& model, const std::vector<Vec3>& x);
 std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3>& x);
 
 // Measures the run as it stands. `meshes`: where each body's mesh came from.
-Summary summarize(const Scene& scene, const Model& model, const std::vector<std::string>& meshes,
-                  RunState& run, Workspace& workspace);
+Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
+                  const std::vector<std::string>& meshes, RunState& run, Workspace& workspace);
 
 // The object of summary.json: docs/output.md names its keys.
 nlohmann::ordered_json to_json(const Summary& summary);

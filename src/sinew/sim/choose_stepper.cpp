@@ -31,14 +31,14 @@ struct Trial {
 };
 
 // Nothing where a step finds no equilibrium.
-std::optional<Trial> try_implicit(const Model& model, const Contest& contest,
-                                  const ImplicitOptions& options, State state,
-                                  ImplicitStepper& stepper) {
+std::optional<Trial> try_implicit(const Model& model, const Controls& controls,
+                                  const Contest& contest, const ImplicitOptions& options,
+                                  State state, ImplicitStepper& stepper) {
   Trial trial;
   right(model, stepper.workspace(), state);
   try {
     for (int i = 0; i < trial_steps; ++i) {
-      const ImplicitReport report = stepper.step(contest.implicit_step, options, state);
+      const ImplicitReport report = stepper.step(contest.implicit_step, controls, options, state);
       trial.newton += report.newton;
       trial.products += report.products;
     }
@@ -55,8 +55,8 @@ std::optional<Trial> try_implicit(const Model& model, const Contest& contest,
 
 }  // namespace
 
-Choice choose_stepper(const Scene& scene, const Model& model, const State& start,
-                      const Contest& contest, const ImplicitOptions& options,
+Choice choose_stepper(const Scene& scene, const Model& model, const Controls& controls,
+                      const State& start, const Contest& contest, const ImplicitOptions& options,
                       ImplicitStepper& stepper) {
   if (scene.budget_ms) return {"implicit", "only implicit steps keep to budget_ms"};
   if (contest.projection != nullptr) {
@@ -71,7 +71,7 @@ Choice choose_stepper(const Scene& scene, const Model& model, const State& start
   const double verlet_work = std::ceil(contest.interval / contest.verlet_step);
   const std::string verlet = fmt::format("verlet: stable step {:.3g} ms, {:.0f} steps a frame",
                                          1e3 * contest.stable_step, verlet_work);
-  const auto trial = try_implicit(model, contest, options, start, stepper);
+  const auto trial = try_implicit(model, controls, contest, options, start, stepper);
   if (!trial) return {"verlet", verlet + "; implicit: a trial step found no equilibrium"};
   const double work = trial->work / (scene.precision == "single" ? single_step_cost : 1.0);
   return {work < verlet_work ? "implicit" : "verlet",

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/scene/scene.h"
 #include "sinew/solver/implicit.h"
@@ -36,8 +37,8 @@ struct Contest {
 };
 
 // Takes trial steps of `stepper` on a copy of the state.
-Choice choose_stepper(const Scene& scene, const Model& model, const State& start,
-                      const Contest& contest, const ImplicitOptions& options,
+Choice choose_stepper(const Scene& scene, const Model& model, const Controls& controls,
+                      const State& start, const Contest& contest, const ImplicitOptions& options,
                       ImplicitStepper& stepper);
 
 }  // namespace sinew

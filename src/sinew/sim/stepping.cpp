@@ -89,7 +89,7 @@ bool changes_with_time(const Model& model) {
 
 }  // namespace
 
-Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
+Stepping::Stepping(const Scene& scene, const Model& model, const Controls& controls, RunState& run)
     : model_(model),
       workspace_(model),
       automatic_(!scene.dt.has_value()),
@@ -125,12 +125,12 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
   }
   StableStep stable;
   if (!goes_on && run.stepper != "implicit") {
-    stable = find_stable_step(model, run.state.position, workspace_);
+    stable = find_stable_step(model, controls, run.state.position, workspace_);
   }
-  if (run.stepper.empty()) choose(scene, stable, implicit_step, run);
+  if (run.stepper.empty()) choose(scene, controls, stable, implicit_step, run);
   if (run.stepper == "implicit") {
     workspace_.packed.reset();
-    if (budget_) implicit_->prepare(implicit_step, implicit_options_);
+    if (budget_) implicit_->prepare(implicit_step, controls, implicit_options_);
     if (goes_on) return;
     run.target_step = implicit_step;
     run.stable_step = run.smallest_stable_step = no_limit;
@@ -148,11 +148,12 @@ Stepping::Stepping(const Scene& scene, const Model& model, RunState& run)
 }
 
 // stepper = "auto"
-void Stepping::choose(const Scene& scene, const StableStep& stable, double implicit_step,
-                      RunState& run) {
+void Stepping::choose(const Scene& scene, const Controls& controls, const StableStep& stable,
+                      double implicit_step, RunState& run) {
   const Contest contest{interval_, verlet_step_at(stable.step), stable.step, implicit_step,
                         only_verlet_knows(model_)};
-  Choice choice = choose_stepper(scene, model_, run.state, contest, implicit_options_, *implicit_);
+  Choice choice =
+      choose_stepper(scene, model_, controls, run.state, contest, implicit_options_, *implicit_);
   run.stepper = std::move(choice.stepper);
   run.stepper_reason = std::move(choice.reason);
   if (run.stepper == "verlet") implicit_.reset();
@@ -209,12 +210,12 @@ bool Stepping::too_long(const RunState& run, double stable, double slack) const 
   return run.step > stable && !allow_unstable_;
 }
 
-void Stepping::watch(RunState& run) {
+void Stepping::watch(const Controls& controls, RunState& run) {
   run.steps_to_watch = run.watch_interval;
   if (run.stiff_mode.empty()) return;
   const double before = run.stable_step;
   run.stable_step =
-      watch_stable_step(model_, run.state.position, run.step, run.stiff_mode, workspace_);
+      watch_stable_step(model_, controls, run.state.position, run.step, run.stiff_mode, workspace_);
   run.smallest_stable_step = std::min(run.smallest_stable_step, run.stable_step);
   const double time = run.state.time;
   const bool stirred = run.stable_step < calm * before ||
@@ -232,12 +233,13 @@ void Stepping::watch(RunState& run) {
   }
 }
 
-bool Stepping::rest_frame(RunState& run, const std::atomic<bool>* stop) {
+bool Stepping::rest_frame(const Controls& controls, RunState& run, const std::atomic<bool>* stop) {
   StaticOptions options;
   options.tolerance = tolerance_;
   options.stop = stop;
   const Clock::time_point start = Clock::now();
-  const StaticReport report = static_->solve(frame_end(run.frame + 1), options, run.state);
+  const StaticReport report =
+      static_->solve(controls, frame_end(run.frame + 1), options, run.state);
   run.newton_steps += report.newton;
   run.products += report.products;
   run.residual = report.residual;
@@ -249,7 +251,8 @@ bool Stepping::rest_frame(RunState& run, const std::atomic<bool>* stop) {
   return true;
 }
 
-void Stepping::implicit_steps(RunState& run, const std::atomic<bool>* stop) {
+void Stepping::implicit_steps(const Controls& controls, RunState& run,
+                              const std::atomic<bool>* stop) {
   while (run.steps_left > 0) {
     const Clock::time_point start = Clock::now();
     ImplicitOptions options = implicit_options_;
@@ -258,7 +261,7 @@ void Stepping::implicit_steps(RunState& run, const std::atomic<bool>* stop) {
                                                 static_cast<double>(run.steps_left));
       options.deadline = start + std::chrono::duration_cast<Clock::duration>(share);
     }
-    const ImplicitReport report = implicit_->step(run.step, options, run.state);
+    const ImplicitReport report = implicit_->step(run.step, controls, options, run.state);
     --run.steps_left;
     run.newton_steps += report.newton;
     run.products += report.products;
@@ -280,12 +283,13 @@ void Stepping::implicit_steps(RunState& run, const std::atomic<bool>* stop) {
   }
 }
 
-void Stepping::verlet_steps(RunState& run, const std::atomic<bool>* stop) {
+void Stepping::verlet_steps(const Controls& controls, RunState& run,
+                            const std::atomic<bool>* stop) {
   const Clock::time_point start = Clock::now();
   const double before = run.work.seconds;
   while (run.steps_left > 0) {
-    if (run.steps_to_watch == 0) watch(run);
-    const VerletReport report = verlet_step(model_, run.step, run.state, workspace_);
+    if (run.steps_to_watch == 0) watch(controls, run);
+    const VerletReport report = verlet_step(model_, controls, run.step, run.state, workspace_);
     --run.steps_left;
     --run.steps_to_watch;
     if (model_.has_volume && run.steps_left > 0) watch_guard(run);
@@ -302,13 +306,14 @@ void Stepping::verlet_steps(RunState& run, const std::atomic<bool>* stop) {
   }
 }
 
-bool Stepping::advance_frame(RunState& run, const std::atomic<bool>* stop) {
-  if (static_) return rest_frame(run, stop);
+bool Stepping::advance_frame(const Controls& controls, RunState& run,
+                             const std::atomic<bool>* stop) {
+  if (static_) return rest_frame(controls, run, stop);
   if (run.steps_left == 0) begin_frame(run);
   if (implicit_) {
-    implicit_steps(run, stop);
+    implicit_steps(controls, run, stop);
   } else {
-    verlet_steps(run, stop);
+    verlet_steps(controls, run, stop);
   }
   if (run.steps_left > 0) return false;
   ++run.frame;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sinew/forces/workspace.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/scene/scene.h"
 #include "sinew/solver/implicit.h"
@@ -72,27 +73,28 @@ class Stepping {
   // stepper = "verlet": checks the scene's dt against the stable step of the model as it starts.
   // Throws Error(unstable) where dt / substeps is above it and the scene does not allow that.
   // stepper = "auto": sets run.stepper and its reason, unless a checkpoint has.
-  Stepping(const Scene& scene, const Model& model, RunState& run);
+  Stepping(const Scene& scene, const Model& model, const Controls& controls, RunState& run);
 
   // Runs to the end of the next frame, or until `stop` is set after a step. Returns true when the
   // frame is finished. Throws Error(diverged), see verlet_step and StaticSolver::solve.
-  bool advance_frame(RunState& run, const std::atomic<bool>* stop);
+  bool advance_frame(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
 
   std::int64_t frame_count() const { return frames_; }
   Workspace& workspace() { return workspace_; }
 
  private:
   double frame_end(std::int64_t frame) const;
-  void choose(const Scene& scene, const StableStep& stable, double implicit_step, RunState& run);
+  void choose(const Scene& scene, const Controls& controls, const StableStep& stable,
+              double implicit_step, RunState& run);
   double verlet_step_at(double stable) const;
   void begin_frame(RunState& run) const;
-  void implicit_steps(RunState& run, const std::atomic<bool>* stop);
-  void verlet_steps(RunState& run, const std::atomic<bool>* stop);
-  void watch(RunState& run);
+  void implicit_steps(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
+  void verlet_steps(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
+  void watch(const Controls& controls, RunState& run);
   void shorten(RunState& run, double step) const;
   void watch_guard(RunState& run) const;
   bool too_long(const RunState& run, double stable, double slack) const;
-  bool rest_frame(RunState& run, const std::atomic<bool>* stop);
+  bool rest_frame(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
 
   const Model& model_;
   Workspace workspace_;
