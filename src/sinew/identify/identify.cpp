@@ -1,6 +1,10 @@
 #include "sinew/identify/identify.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -10,6 +14,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/identify/calibrate.h"
 #include "sinew/mesh/surface.h"
+#include "sinew/model/material_words.h"
 #include "sinew/solver/stable_step.h"
 #include "sinew/solver/static.h"
 #include "sinew/solver/verlet.h"
@@ -17,22 +22,30 @@
 namespace sinew {
 namespace {
 
-Material material_of(const AskedMaterial& asked, const std::string& law) {
+// A law that can be identified, with what makes a material one of it.
+struct IdentifiableLaw {
+  std::string_view name;
+  Law law = Law::neo_hookean;
+  double beta = -1.0;
+  Volume volume = Volume::by_law;
+};
+
+constexpr std::array<IdentifiableLaw, 5> identifiable = {
+    {{word_of(Law::neo_hookean)},
+     {"linear-fem", Law::neo_hookean, 1.0, Volume::tet},
+     {word_of(Law::calibrated), Law::calibrated},
+     {word_of(Law::lloyd), Law::lloyd},
+     {word_of(Law::vangelder), Law::vangelder}}};
+
+Material material_of(const AskedMaterial& asked, const IdentifiableLaw& law) {
   Material m;
   m.young = asked.young;
   m.poisson = asked.poisson;
   m.density = asked.density;
   m.damping_ratio = asked.damping_ratio;
-  if (law == "linear-fem") {
-    m.beta = 1.0;
-    m.volume = Volume::tet;
-  } else if (law == "calibrated") {
-    m.law = Law::calibrated;
-  } else if (law == "lloyd") {
-    m.law = Law::lloyd;
-  } else if (law == "vangelder") {
-    m.law = Law::vangelder;
-  }
+  m.law = law.law;
+  m.beta = law.beta;
+  m.volume = law.volume;
   return m;
 }
 
@@ -117,22 +130,26 @@ StressCurve measure_curve(const BodySpec& body, const AskedMaterial& asked) {
 }  // namespace
 
 std::vector<std::string> identifiable_laws() {
-  return {"neo-hookean", "linear-fem", "calibrated", "lloyd", "vangelder"};
+  std::vector<std::string> names;
+  for (const IdentifiableLaw& law : identifiable) names.emplace_back(law.name);
+  return names;
 }
 
 LawIdentity identify_law(const TetMesh& mesh, const AskedMaterial& asked, const std::string& law,
                          bool with_curve) {
-  const std::vector<std::string> known = identifiable_laws();
-  if (std::find(known.begin(), known.end(), law) == known.end()) {
-    throw Error(ErrorKind::usage, "'" + law + "' is no law that can be identified",
-                "one of: all, neo-hookean, linear-fem, calibrated, lloyd, vangelder");
+  const auto known =
+      std::find_if(identifiable.begin(), identifiable.end(),
+                   [&](const IdentifiableLaw& candidate) { return candidate.name == law; });
+  if (known == identifiable.end()) {
+    throw Error(ErrorKind::usage, fmt::format("'{}' is no law that can be identified", law),
+                fmt::format("one of: all, {}", fmt::join(identifiable_laws(), ", ")));
   }
   LawIdentity identity;
   identity.law = law;
   BodySpec body;
   body.name = "mesh";
   body.mesh = mesh;
-  body.materials = {material_of(asked, law)};
+  body.materials = {material_of(asked, *known)};
   body.regions = {"all"};
   try {
     calibrate_materials(body);

@@ -59,7 +59,7 @@ void Simulation::act(const SetCompare& c) {
   other->rebuild(other->scene_, &run_.state);
   other->hands_ = hands_;
   other->ball_ = ball_;
-  const double stable = other->run_.stable_step > 0.0 ? other->run_.stable_step : no_limit;
+  const double stable = other->run_.memory.stable_step;
   other->hands_.hold(*other->model_, other->run_.state, stable);
   other->ball_.hold(*other->model_, other->run_.state, stable);
   other->topology_ = topology_;

@@ -167,7 +167,6 @@ void Simulation::act(const SetGravity& c) {
   // The forces take it from the model in every step: nothing has to be built for it.
   scene_ = with(scene_,
                 {fmt::format("gravity=[{},{},{}]", c.gravity.x(), c.gravity.y(), c.gravity.z())});
-  stepped_.gravity = c.gravity;
   controls_.gravity = c.gravity;
   remember_parameters();
 }

@@ -8,8 +8,9 @@
 
 #include "sinew/forces/workspace.h"
 #include "sinew/io/vtu.h"
+#include "sinew/model/controls.h"
 #include "sinew/scene/scene.h"
-#include "sinew/sim/stepping.h"
+#include "sinew/sim/run_state.h"
 
 namespace sinew {
 

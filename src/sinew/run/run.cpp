@@ -143,9 +143,7 @@ class Runner {
 
   Summary finish_summary(RunState& run, Workspace& workspace, RunStatus status) const {
     Summary s = summarize(scene_, model_, controls_, meshes_, run, workspace);
-    s.status = status == RunStatus::finished      ? "finished"
-               : status == RunStatus::interrupted ? "interrupted"
-                                                  : "diverged";
+    s.status = status;
     s.warnings = warnings_;
     if (scene_.dt && run.step_reductions > 0) {
       s.warnings.push_back(
@@ -154,13 +152,14 @@ class Runner {
                       *scene_.dt / scene_.substeps, run.smallest_stable_step, run.step_reductions));
     }
     if (run.unmet_limits > 0) {
-      const char* remedy = scene_.stepper == "verlet" ? "more limit_sweeps" : "a smaller dt";
+      const char* remedy =
+          scene_.stepper == StepperKind::verlet ? "more limit_sweeps" : "a smaller dt";
       s.warnings.push_back(
           fmt::format("{} of {} steps ended with a limit violated; {}, or a larger "
                       "limit_tolerance, or limits that the pins leave room for",
                       run.unmet_limits, run.state.step, remedy));
     }
-    if (model_.bounces() && scene_.stepper == "implicit") {
+    if (model_.bounces() && scene_.stepper == StepperKind::implicit) {
       s.warnings.push_back("implicit steps know no restitution: every impact is plastic");
     }
     if (run.righting_steps > 0) {

@@ -62,17 +62,26 @@ TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source
 
 TetMesh make_shape(const SceneBody& body) {
   try {
-    if (body.shape == "beam") return beam(body.size, body.cells, body.jitter);
-    if (body.shape == "box") return box(body.size, body.cells, body.jitter);
-    if (body.shape == "sphere") return sphere(body.radius, body.resolution);
-    if (body.shape == "ellipsoid") return ellipsoid(body.radii, body.resolution);
-    if (body.shape == "cylinder") return cylinder(body.radius, body.height, body.resolution);
-    if (body.shape == "hollow_sphere")
-      return hollow_sphere(body.radius, body.inner_radius, body.resolution);
+    switch (body.shape) {
+      case BodyShape::beam:
+        return beam(body.size, body.cells, body.jitter);
+      case BodyShape::box:
+        return box(body.size, body.cells, body.jitter);
+      case BodyShape::sphere:
+        return sphere(body.radius, body.resolution);
+      case BodyShape::ellipsoid:
+        return ellipsoid(body.radii, body.resolution);
+      case BodyShape::cylinder:
+        return cylinder(body.radius, body.height, body.resolution);
+      case BodyShape::hollow_sphere:
+        return hollow_sphere(body.radius, body.inner_radius, body.resolution);
+      case BodyShape::file:
+        break;
+    }
   } catch (const Error& error) {
     throw Error(error.kind(), error.message(), error.remedy(), body.mesh_where);
   }
-  throw Error(ErrorKind::internal, "unknown shape " + body.shape);
+  throw Error(ErrorKind::internal, "a body without a mesh and a shape");
 }
 
 // Diagnoses, repairs, and notes what was found.
@@ -97,7 +106,7 @@ void make_sound(PlacedBody& placed) {
 // The ids of a surface's file are those of its vertices: each stands for the node nearest to it.
 void take_ids_of_surface(PlacedBody& placed) {
   const SceneBody& body = *placed.body;
-  if (!body.shape.empty() || !is_surface(body.mesh)) return;
+  if (body.shape != BodyShape::file || !is_surface(body.mesh)) return;
   std::vector<Index> nodes(placed.mesh.nodes.size());
   std::iota(nodes.begin(), nodes.end(), 0);
   const NearestNode nearest(placed.mesh.nodes, std::move(nodes));
@@ -169,10 +178,10 @@ double checked_volume(const PlacedBody& placed) {
 PlacedBody place(const Scene& scene, const SceneBody& body) {
   PlacedBody placed;
   placed.body = &body;
-  if (body.shape.empty()) {
+  if (body.shape == BodyShape::file) {
     placed.mesh = read_file(scene, body, placed.source);
   } else {
-    placed.source = "shape " + body.shape;
+    placed.source = fmt::format("shape {}", word_of(body.shape));
     placed.mesh = make_shape(body);
   }
   make_sound(placed);

@@ -14,11 +14,12 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view magic = "SINEWCP6";
+constexpr std::string_view magic = "SINEWCP7";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>
 void visit(Archive& a, Run& r) {
+  const auto counter = [&](const CounterField&, auto& value) { a.value(value); };
   a.array(r.state.position);
   a.array(r.state.half_velocity);
   a.value(r.state.last_step);
@@ -26,52 +27,34 @@ void visit(Archive& a, Run& r) {
   a.value(r.state.step);
   a.value(r.state.energy.dissipated);
   a.value(r.state.energy.work_in);
-  a.array(r.stepper);
-  a.array(r.stepper_reason);
   a.array(r.state.reactions.ground);
   a.array(r.state.reactions.tension);
   a.array(r.state.reactions.pressure);
   a.array(r.state.reactions.contacts);
   a.array(r.state.obstacle_force);
+  a.value(r.stepper);
+  a.array(r.stepper_reason);
+  a.value(r.memory.stable_step);
+  a.array(r.memory.stiff_mode);
+  a.value(r.memory.steps_to_watch);
+  a.value(r.memory.watch_interval);
   a.value(r.frame);
   a.value(r.steps_left);
-  a.value(r.steps_to_watch);
-  a.value(r.watch_interval);
   a.value(r.step);
   a.value(r.target_step);
-  a.value(r.stable_step);
   a.value(r.smallest_stable_step);
-  a.array(r.stiff_mode);
-  a.value(r.step_reductions);
-  a.value(r.step_increases);
-  a.value(r.step_cuts);
-  a.value(r.limit_sweeps);
-  a.value(r.unmet_limits);
-  a.value(r.righting_steps);
-  a.value(r.contacts);
-  a.value(r.deepest);
-  a.value(r.depth);
-  a.value(r.friction_work);
-  a.value(r.newton_steps);
-  a.value(r.products);
-  a.value(r.residual);
-  a.value(r.peak_stretch);
-  a.value(r.peak_compress);
-  a.value(r.peak_inverted_tets);
   a.value(r.start_energy);
   a.value(r.wall_seconds);
   a.array(r.frame_times);
   a.value(r.work.seconds);
   a.value(r.work.steps);
-  a.value(r.work.newton_steps);
-  a.value(r.work.products);
-  a.value(r.work.residual);
-  a.value(r.work.cut_short);
   a.value(r.frames_cut_short);
   a.array(r.frame_seconds);
+  for_each_counter(r, counter);
+  for_each_counter(r.work, counter);
 }
 
-struct Writer {
+struct CheckpointWriter {
   std::string bytes;
   template <typename T>
   void value(const T& v) {
@@ -85,7 +68,7 @@ struct Writer {
   }
 };
 
-struct Reader {
+struct CheckpointReader {
   std::string_view bytes;
   bool good = true;
   template <typename T>
@@ -121,7 +104,7 @@ std::uint64_t digest(std::string_view bytes) {
 }  // namespace
 
 void write_checkpoint(const std::filesystem::path& file, const Model& model, const RunState& run) {
-  Writer w;
+  CheckpointWriter w;
   w.bytes = magic;
   w.value(model.hash());
   visit(w, run);
@@ -142,7 +125,7 @@ RunState read_checkpoint(const std::filesystem::path& file, const Model& model) 
   if (closing != digest(view)) reject(file, "the checkpoint is damaged", "start the run again");
   view.remove_prefix(magic.size());
 
-  Reader r{view};
+  CheckpointReader r{view};
   std::uint64_t model_hash = 0;
   r.value(model_hash);
   if (model_hash != model.hash()) {

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "sinew/sim/stepping.h"
+#include "sinew/sim/run_state.h"
 
 namespace sinew {
 

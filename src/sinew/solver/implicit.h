@@ -7,13 +7,9 @@
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/linear_solver.h"
+#include "sinew/solver/stepper_kind.h"
 
 namespace sinew {
-
-enum class Scheme {
-  backward_euler,  // first order, damps every swing
-  sdirk2           // second order, damps hardly, two solves a step
-};
 
 struct ImplicitOptions {
   Scheme scheme = Scheme::sdirk2;

@@ -58,10 +58,6 @@ double half_stable_step(const Model& model, Workspace& workspace) {
          find_stable_step(model, initial_controls(model), model.rest_position, workspace).step;
 }
 
-const char* word_of(Precision p) {
-  return p == Precision::single ? "single" : "double";
-}
-
 bool is_explicit(Kernel k) {
   return k == Kernel::forces || k == Kernel::volumes || k == Kernel::gather || k == Kernel::step ||
          k == Kernel::frame;
@@ -97,7 +93,7 @@ std::string BenchCase::name() const {
 }
 
 std::string BenchCase::precision_name() const {
-  if (is_explicit(kernel)) return word_of(precision);
+  if (is_explicit(kernel)) return std::string(word_of(precision));
   return kernel == Kernel::product || kernel == Kernel::iteration ? "single" : "";
 }
 
