@@ -28,7 +28,7 @@ void report(benchmark::State& state, const SurfaceContacts& contacts,
             const std::vector<Contact>& found) {
   Hash h;
   for (const Contact& c : found) {
-    h.value(c.key);
+    h.value(c.id);
     h.value(c.gap);
   }
   state.SetLabel("contacts " + hex(h.digest()));
