@@ -110,7 +110,8 @@ TEST(Colliders, AMovingTurningPlaneCarriesItsPoints) {
   const Pose after = obstacle_pose(plane, 1.0);
   for (const Contact& c : contacts) {
     EXPECT_LT((c.normal - Vec3(-std::sin(0.1), std::cos(0.1), 0)).norm(), 1e-12);
-    EXPECT_LT((c.anchor - c.way - before.at(after.own(c.anchor))).norm(), 1e-15);
+    const Vec3 place = s.to[uz(c.node[0])] - c.gap * c.normal;  // on the plane
+    EXPECT_LT((place - c.way - before.at(after.own(place))).norm(), 1e-15);
     EXPECT_LT(c.gap, 0.0);
     EXPECT_GT(c.moment, 0.0);
     EXPECT_LT(c.moment, 1.0);

@@ -120,8 +120,8 @@ void add_node(const Moving& m, Index node, const std::vector<Vec3>& from,
   c.weight[0] = 1.0;
   c.count = 1;
   c.normal = m.after.turn * wall->normal;
-  c.anchor = m.after.at(wall->nearest);
-  c.way = c.anchor - m.before.at(wall->nearest);
+  c.anchor = m.after.at(wall->anchor);
+  c.way = m.after.at(wall->nearest) - m.before.at(wall->nearest);
   c.gap = contact_gap(c, to);
   c.moment = moment_of(wall->normal.dot(q0 - wall->nearest), c.gap);
   c.friction = m.obstacle->friction;
