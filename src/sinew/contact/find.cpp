@@ -32,21 +32,30 @@ bool ContactFinder::anything_to_find(const Model& model) {
                      [](const Obstacle& o) { return o.hard(); });
 }
 
+void ContactFinder::find_shapes(const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                                double t0, double t1, double reach,
+                                std::vector<Contact>& contacts) {
+  find_collider_contacts(model_, from, to, t0, t1, reach, contacts);
+}
+
+void ContactFinder::find_surfaces(const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                                  double reach, std::vector<Contact>& contacts) {
+  contacts.clear();
+  if (!surfaces_) return;
+  surfaces_->find(from, to, reach, contacts);
+  if (has_rigid_surfaces_) name_rigid_contacts(model_, from, to, contacts);
+  if (!std::is_sorted(contacts.begin(), contacts.end(), comes_before)) {
+    std::sort(contacts.begin(), contacts.end(), comes_before);
+  }
+}
+
 void ContactFinder::find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0,
                          double t1, double reach, std::vector<Contact>& contacts) {
-  const auto first = std::ssize(contacts);
-  const auto append = [&] { contacts.insert(contacts.end(), part_.begin(), part_.end()); };
-  if (surfaces_) {
-    surfaces_->find(from, to, reach, part_);
-    if (has_rigid_surfaces_) name_rigid_contacts(model_, from, to, part_);
-    first == 0 ? contacts.swap(part_) : append();
-  }
-  find_collider_contacts(model_, from, to, t0, t1, reach, part_);
-  append();
-  const auto begin = contacts.begin() + first;
-  if (!std::is_sorted(begin, contacts.end(), comes_before)) {
-    std::sort(begin, contacts.end(), comes_before);
-  }
+  contacts.clear();
+  find_shapes(from, to, t0, t1, reach, contacts);
+  if (!surfaces_) return;
+  find_surfaces(from, to, reach, part_);
+  contacts.insert(contacts.end(), part_.begin(), part_.end());
 }
 
 }  // namespace sinew

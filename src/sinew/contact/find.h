@@ -24,8 +24,16 @@ class ContactFinder {
   double explicit_reach() const { return explicit_reach_; }
 
   // Contacts of a step from positions `from` at time t0 to `to` at time t1 (nodes): places whose
-  // gap at `to` is below `reach` [m], and those that met on the way. Appends them, sorted;
-  // they depend on nothing but the model and the arguments.
+  // gap at `to` is below `reach` [m], and those that met on the way. Sorted by id; they depend on
+  // nothing but the model and the arguments.
+  //
+  // Those with obstacles that have a shape; appends them.
+  void find_shapes(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0, double t1,
+                   double reach, std::vector<Contact>& contacts);
+  // Those between surfaces, of bodies and rigid meshes; `contacts` is cleared.
+  void find_surfaces(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
+                     std::vector<Contact>& contacts);
+  // All of them, `contacts` is cleared.
   void find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0, double t1,
             double reach, std::vector<Contact>& contacts);
 
