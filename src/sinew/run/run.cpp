@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/base/clock.h"
 #include "sinew/base/hash.h"
 #include "sinew/forces/righting.h"
 #include "sinew/forces/springs.h"
@@ -14,6 +15,7 @@
 #include "sinew/run/recorder.h"
 #include "sinew/scene/build.h"
 #include "sinew/sim/checkpoint.h"
+#include "sinew/sim/stepping.h"
 
 namespace sinew {
 namespace {

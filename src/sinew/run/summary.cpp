@@ -10,6 +10,7 @@
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
 #include "sinew/sim/obstacle_reading.h"
+#include "sinew/solver/implicit.h"
 
 namespace sinew {
 namespace {

@@ -115,7 +115,7 @@ Request request_of(const std::string& type, Fields& f) {
     const int which = hand();
     const auto node = static_cast<Index>(f.integer("node", any_node));
     const Vec3 point = f.point("point");
-    return Command(Grab{which, node, point, f.number("radius", 0.0)});
+    return Command(live::Grab{which, node, point, f.number("radius", 0.0)});
   }
   if (type == "drag") {
     const int which = hand();
