@@ -1,4 +1,4 @@
-// Help for words that a user mistyped.
+// Words: case, the characters of names, and help for words that a user mistyped.
 #pragma once
 
 #include <span>
@@ -6,6 +6,12 @@
 #include <string_view>
 
 namespace sinew {
+
+// The text with the letters A to Z in lower case. Other bytes, UTF-8 among them, do not change.
+std::string lower_case(std::string_view text);
+
+// Whether names in a scene may contain the character: a letter of ASCII, a digit, '_' or '-'.
+bool is_name_character(char c);
 
 // The known word that was probably meant: the one with the fewest edits (insert, delete, replace or
 // swap neighbouring letters; case does not count), the earlier of two as near. At most one edit for

@@ -16,4 +16,7 @@ std::string read_file(const std::filesystem::path& path);
 // file is then removed. Not synced to disk: safe against a killed process, not a power cut.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
+// The extension of a path in lower case, with its dot: ".mesh". Empty if there is none.
+std::string lower_extension(const std::filesystem::path& path);
+
 }  // namespace sinew::io

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "sinew/base/error.h"
+#include "sinew/base/text.h"
 #include "sinew/io/file_io.h"
 #include "sinew/io/image_parts.h"
 #include "sinew/io/value_reader.h"
@@ -43,14 +44,6 @@ double voxel(const char* at, VoxelType type, bool swap) {
       break;
   }
   return from_bytes<double>(at, swap);
-}
-
-std::string lower_name(const fs::path& path) {
-  std::string name = path.filename().string();
-  for (char& c : name) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return name;
 }
 
 }  // namespace
@@ -199,13 +192,13 @@ void check_axes(const ImageBytes& bytes, const LabelImage& image) {
 }
 
 bool is_image_name(const fs::path& path) {
-  const std::string name = lower_name(path);
+  const std::string name = lower_case(path.filename().string());
   return name.ends_with(".inr") || name.ends_with(".inr.gz") || name.ends_with(".nii") ||
          name.ends_with(".nii.gz");
 }
 
 LabelImage read_image(const fs::path& path) {
-  const std::string name = lower_name(path);
+  const std::string name = lower_case(path.filename().string());
   if (name.ends_with(".inr") || name.ends_with(".inr.gz")) {
     return parse_inr(read_file(path), path.string());
   }

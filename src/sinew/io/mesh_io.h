@@ -34,4 +34,7 @@ void write_mesh(const std::filesystem::path& path, const TetMesh& mesh,
 // The endings that can be read and written, for messages: {".mesh", ...}.
 const std::vector<std::string>& mesh_endings();
 
+// Whether the name has one of these endings, case ignored.
+bool is_mesh_name(const std::filesystem::path& path);
+
 }  // namespace sinew::io

@@ -128,11 +128,13 @@ const std::vector<std::string>& surface_endings() {
   return endings;
 }
 
+bool is_surface_name(const fs::path& path) {
+  const std::vector<std::string>& endings = surface_endings();
+  return std::find(endings.begin(), endings.end(), lower_extension(path)) != endings.end();
+}
+
 SurfaceSoup read_surface(const fs::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string ending = lower_extension(path);
   const std::string file = path.string();
   if (ending == ".off") return parse_off(read_file(path), file);
   if (ending == ".obj") return parse_obj(read_file(path), file);

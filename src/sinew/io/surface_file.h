@@ -52,4 +52,7 @@ SurfaceSoup read_surface(const std::filesystem::path& path);
 // {".off", ".obj", ".stl", ".ply"}
 const std::vector<std::string>& surface_endings();
 
+// Whether the name has one of these endings, case ignored.
+bool is_surface_name(const std::filesystem::path& path);
+
 }  // namespace sinew::io

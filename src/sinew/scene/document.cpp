@@ -4,9 +4,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <tuple>
+
+#include "sinew/base/text.h"
 
 namespace sinew {
 
@@ -135,30 +136,11 @@ DocValue convert(const toml::node& node, const std::string& file) {
 // ---- and back to text ----
 
 bool bare(std::string_view key) {
-  return !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
-  });
-}
-
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (c == '\n') {
-      out += "\\n";
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
+  return !key.empty() && std::all_of(key.begin(), key.end(), is_name_character);
 }
 
 std::string key_text(const std::string& key) {
-  return bare(key) ? key : toml_string(key);
+  return bare(key) ? key : toml_text(key);
 }
 
 std::string number_text(double number) {
@@ -178,7 +160,7 @@ std::string inline_text(const DocValue& value) {
     case DocValue::Type::number:
       return number_text(value.number);
     case DocValue::Type::text:
-      return toml_string(value.text);
+      return toml_text(value.text);
     case DocValue::Type::array:
       for (const DocValue& item : value.items) out += (out.empty() ? "" : ", ") + inline_text(item);
       return '[' + out + ']';
@@ -204,6 +186,23 @@ void write_table(const DocValue& table, const std::string& path, std::string& ou
 }
 
 }  // namespace
+
+std::string toml_text(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
 
 const DocValue* DocValue::find(std::string_view key) const {
   for (const DocEntry& entry : entries)

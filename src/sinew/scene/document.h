@@ -49,6 +49,9 @@ DocValue parse_document(std::string_view text, const std::string& file_name);
 // keep all their digits, so that parse_document gives the same tree but for the places.
 std::string write_document(const DocValue& root);
 
+// A text as a TOML string in quotation marks, with escapes where TOML needs them.
+std::string toml_text(std::string_view text);
+
 // 0.2, "tet", an array of 2, a table: a value as messages show it; long texts are cut.
 std::string describe(const DocValue& value);
 

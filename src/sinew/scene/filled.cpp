@@ -153,16 +153,7 @@ struct Removed {
 }  // namespace
 
 bool is_filled(const fs::path& path) {
-  return io::is_image_name(path) || is_surface(path);
-}
-
-bool is_surface(const fs::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  const auto& surfaces = io::surface_endings();
-  return std::find(surfaces.begin(), surfaces.end(), ending) != surfaces.end();
+  return io::is_image_name(path) || io::is_surface_name(path);
 }
 
 void fit_to(std::vector<Vec3>& points, const Vec3& sides, const Location& where) {
@@ -196,7 +187,7 @@ TetMesh read_filled(const fs::path& path, double size, const Location& where,
   hash.text(path.extension().string());  // the format goes by it
   hash.value(size);
   hash.text(io::read_file(path));
-  const bool stretched = fit && is_surface(path);
+  const bool stretched = fit && io::is_surface_name(path);
   if (stretched)
     for (const double side : *fit) hash.value(side);
   const fs::path folder = cache_folder();

@@ -14,7 +14,6 @@ namespace sinew {
 
 // Whether the name ends like a surface or an image rather than a mesh of tets.
 bool is_filled(const std::filesystem::path& path);
-bool is_surface(const std::filesystem::path& path);
 
 // Stretches the points, each axis by itself, so that their bounding box goes from 0 to `sides`.
 // Error (input), at `where`, for a box without width.

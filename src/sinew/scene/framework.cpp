@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/base/text.h"
 #include "sinew/scene/document_values.h"
 #include "sinew/scene/filled.h"
 #include "sinew/scene/framework_text.h"
@@ -54,9 +55,7 @@ bool can_be_written(std::string_view text) {
 std::string body_name(std::string_view mesh, std::int64_t number) {
   std::string name = fs::path(mesh).stem().string().substr(0, 40);
   for (char& c : name) {
-    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                      c == '_' || c == '-';
-    if (!good) c = '_';
+    if (!is_name_character(c)) c = '_';
   }
   return fmt::format("{}-{}", name, number);
 }

@@ -17,22 +17,9 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view pictures = "/gallery/";
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
-
-std::string ending(const std::string& name) {
-  return lower(fs::path(name).extension().string());
-}
-
 bool can_be_kept(const std::string& name) {
-  const std::string end = ending(name);
-  const auto& meshes = io::mesh_endings();
-  return end == ".toml" || end == ".face" ||
-         std::find(meshes.begin(), meshes.end(), end) != meshes.end();
+  const std::string end = io::lower_extension(name);
+  return end == ".toml" || end == ".face" || io::is_mesh_name(name);
 }
 
 bool is_plain(const std::string& name) {
