@@ -1,4 +1,4 @@
-// sinew identify: what every law makes of a material on a given mesh.
+// sinew identify: the moduli that each law gives a material on a given mesh.
 #include <fmt/format.h>
 
 #include <cmath>

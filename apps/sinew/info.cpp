@@ -1,4 +1,4 @@
-// sinew info: the mesh doctor.
+// sinew info: diagnosis of a mesh.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -36,7 +36,7 @@ struct Arguments {
   bool json = false;
 };
 
-// What can be measured where every tet names finite nodes.
+// Measurements for a mesh whose tets name finite nodes.
 struct Measures {
   Index edges = 0;
   Quality quality;
@@ -59,7 +59,7 @@ struct Report {
 };
 
 Measures measure(TetMesh mesh, double scale) {
-  orient(mesh);  // the doctor has told; here inverted tets would only spoil the sums
+  orient(mesh);  // inverted tets are already reported; here they would only distort the sums
   Measures m;
   const EdgeTable edges = build_edges(mesh.tets, mesh.node_count());
   m.edges = edges.edge_count();
@@ -159,7 +159,7 @@ void print_histogram(const Quality& quality) {
   for (auto bin = first; bin < last; ++bin) {
     const auto count = static_cast<double>(*bin);
     const auto low = 10 * (bin - bins.begin());
-    // At least one mark for a bin that is not empty: the rare extreme angles are what matters.
+    // At least one mark for a bin that is not empty: the rare extreme angles matter.
     const auto marks = static_cast<std::size_t>(40 * count / largest + (count > 0 ? 0.999 : 0));
     fmt::print("  {:>3} - {:<3} {:>8.3f} %  {}\n", low, low + 10, 100 * count / total,
                std::string(marks, '#'));

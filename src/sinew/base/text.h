@@ -13,10 +13,10 @@ std::string lower_case(std::string_view text);
 // Whether names in a scene may contain the character: a letter of ASCII, a digit, '_' or '-'.
 bool is_name_character(char c);
 
-// The known word that was probably meant: the one with the fewest edits (insert, delete, replace or
-// swap neighbouring letters; case does not count), the earlier of two as near. At most one edit for
-// every three letters. Failing that, a known word of which `word` is a longer or shorter form
-// ("youngs_modulus" for "young"). Empty if nothing is near.
+// The known word that the user probably meant: the one with the fewest edits (insert, delete,
+// replace or swap neighbouring letters; case is ignored), the earlier of two equals. At most one
+// edit for every three letters. Otherwise a known word of which `word` is a longer or shorter form
+// ("youngs_modulus" for "young"). Empty if there is none.
 std::string nearest(std::string_view word, std::span<const std::string_view> known);
 
 }  // namespace sinew

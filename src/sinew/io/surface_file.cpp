@@ -46,9 +46,9 @@ bool is_ear(const std::vector<Index>& left, std::size_t at, const Vec3& normal,
   return true;
 }
 
-// Cuts ears off (G. Meisters, "Polygons have ears", 1975). Where a polygon has none, being warped
-// or crossing itself, any corner does: the checks that follow see what comes of it. Above this size
-// the search would take too long, and the polygon is taken for convex.
+// Ear clipping (G. Meisters, "Polygons have ears", 1975). If a polygon has no ear, because it is
+// warped or crosses itself, any corner is cut; later checks examine the result. Above this size the
+// search would take too long, and the polygon is treated as convex.
 constexpr std::size_t most_searched = 128;
 
 void split(std::span<const Index> polygon, const std::vector<Vec3>& x,

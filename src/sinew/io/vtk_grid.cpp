@@ -15,7 +15,7 @@
 namespace sinew::io {
 namespace {
 
-// Who writes them: Sinew; many tools; meshio (medit:ref, gmsh:physical, tetgen:ref, cell_tags);
+// Written by Sinew; many tools; meshio (medit:ref, gmsh:physical, tetgen:ref, cell_tags);
 // VTK's Gmsh and Exodus readers; SimVascular and VMTK (ModelRegionID, CellEntityIds); Gmsh itself.
 constexpr std::array<std::string_view, 18> names = {
     "region",        "regions",    "label",           "labels",        "regionid",

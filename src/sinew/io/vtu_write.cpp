@@ -104,7 +104,7 @@ class VtuWriter {
   }
 
   // One DataArray of T. fill(put) calls put(value) for each number. tuples > 0: FieldData, which
-  // has to say how many.
+  // must state their number.
   template <typename T, typename Fill>
   void array(std::string_view name, int components, std::size_t tuples, Fill fill) {
     fmt::format_to(std::back_inserter(text_), "<DataArray type=\"{}\" Name=\"{}\"", vtk_type<T>,

@@ -1,5 +1,5 @@
-// A report as one HTML file: no script, no second file, readable in light and dark mode and on
-// paper. What it holds is escaped; the page is well-formed XML as well.
+// A report as one HTML file without scripts, readable in light and dark mode and on paper. All text
+// is escaped; the page is also well-formed XML.
 #pragma once
 
 #include <string>
@@ -11,8 +11,8 @@
 
 namespace sinew::report {
 
-// Parts appear in the order in which they are added. Figures that follow each other stand side by
-// side where the window is wide enough.
+// Parts appear in the order in which they are added. Consecutive figures are side by side if the
+// window is wide enough.
 class Page {
  public:
   explicit Page(std::string title);

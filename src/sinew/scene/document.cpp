@@ -15,9 +15,9 @@ namespace {
 
 // ---- limits ----
 
-// The TOML library recurses over what it has parsed, so the depth is bounded before it sees the
-// text: arrays and braces open at once, and the dots of one key. Follows strings and comments just
-// as far as that needs.
+// The TOML library recurses over its result, so the depth is limited before it parses the text: the
+// number of open arrays and braces, and the dots of one key. Strings and comments are followed only
+// as far as necessary.
 class DepthCheck {
  public:
   DepthCheck(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -53,7 +53,7 @@ class DepthCheck {
     at_ += multiline ? 3 : 1;
     while (at_ < text_.size()) {
       if (text_[at_] == '\n') {
-        if (!multiline) return;  // not TOML: the parser says so
+        if (!multiline) return;  // not TOML: the parser reports it
         ++line_;
         line_start_ = at_ + 1;
       }
@@ -146,7 +146,8 @@ std::string key_text(const std::string& key) {
 std::string number_text(double number) {
   if (std::isnan(number)) return "nan";
   std::string text = fmt::format("{}", number);
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";  // or it reads as an integer
+  if (text.find_first_of(".en") == std::string::npos)
+    text += ".0";  // otherwise TOML reads an integer
   return text;
 }
 

@@ -29,9 +29,9 @@ bool is_plain(const std::string& name) {
              std::string::npos;
 }
 
-// A folder that only this user can look into.
+// A folder that only this user can read.
 fs::path make_folder() {
-  // mkdtemp() puts letters of its own in the place of six of these.
+  // mkdtemp() replaces six of these characters.
   std::string path = (fs::temp_directory_path() / "sinew-view-").string() + std::string(6, 'X');
   if (::mkdtemp(path.data()) == nullptr) {
     throw Error(ErrorKind::io, "cannot make a folder for files", "set TMPDIR to one that is yours",

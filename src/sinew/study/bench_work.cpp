@@ -53,7 +53,7 @@ Work pass(double items, double bytes, double flops = 0.0) {
   return {items * bytes, items * flops, items * bytes};
 }
 
-// One that a pass before has counted as part of the working set.
+// An array that an earlier pass has counted as part of the working set.
 Work again(double items, double bytes, double flops = 0.0) {
   return {items * bytes, items * flops, 0.0};
 }
@@ -67,7 +67,7 @@ Work single_forces(const Counts& n) {
   return w + pass(n.springs, packed_spring, spring_flops) + pass(n.nodes, four);  // forces
 }
 
-// Positions of nodes that tets or springs look at.
+// Positions of nodes, read by tets or springs.
 Work positions(const Counts& n) {
   return pass(n.nodes, vec);
 }
@@ -120,7 +120,7 @@ Work gather_work(const Model& model, Precision precision) {
 Work update_work(const Model& model) {
   const Counts n = counts_of(model);
   // Force, position and velocity read and written; mass, its inverse and drag. Only springs have
-  // looked at velocities before.
+  // read velocities before.
   const Work velocity = n.springs > 0.0 ? again(n.nodes, vec) : pass(n.nodes, vec);
   return again(n.nodes, 5.0 * vec) + velocity + pass(n.nodes, 3.0 * number, update_flops);
 }

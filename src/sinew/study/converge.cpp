@@ -14,7 +14,7 @@ namespace sinew::study {
 
 namespace {
 
-// Changes below this share of the displacement are the solver's, not the mesh's.
+// Changes below this share of the displacement come from the solver, not from the mesh.
 constexpr double noise = 1e-5;
 
 std::vector<std::string> refined(const Scene& scene, std::vector<std::string> set, int level) {

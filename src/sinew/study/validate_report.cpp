@@ -1,4 +1,4 @@
-// What the validation suite found: as text, as a page, as JSON.
+// The results of the validation suite: as text, as a page, as JSON.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -28,7 +28,7 @@ struct Column {
   std::size_t mesh;
 };
 
-// Law by law, from coarse to fine: those that have a trial.
+// Law by law, from coarse to fine: the columns with a trial.
 std::vector<Column> columns_of(const CaseResult& result) {
   std::vector<Column> columns;
   for (const LawChoice& law : law_choices())
@@ -76,7 +76,7 @@ std::string magnitude_text(double error) {
   return std::isnan(error) ? "-" : fmt::format("{:.{}f} %", 100 * error, error < 0.1 ? 2 : 1);
 }
 
-// One row for every variant and quantity; with `values`, the values too and not the errors alone.
+// One row for every variant and quantity; with `values`, the values as well as the errors.
 Table errors_table(const CaseResult& result, bool values) {
   const Case& c = result.definition;
   const std::vector<Column> columns = columns_of(result);
@@ -143,7 +143,7 @@ Table trials_table(const CaseResult& result) {
   return table;
 }
 
-// One row for every case: what the laws are off by on its coarsest mesh.
+// One row for every case: the errors of the laws on its coarsest mesh.
 Table summary_table(const SuiteResult& result) {
   Table table;
   table.columns = {{"case", Align::left}, {"tets"}};
@@ -224,7 +224,7 @@ report::Plot convergence_plot(const CaseResult& result) {
   return plot;
 }
 
-// How the error of the values is spread over variants, on the coarsest mesh.
+// The error of the values for each variant, on the coarsest mesh.
 report::BarChart variants_chart(const CaseResult& result) {
   report::BarChart chart;
   chart.title = "by variant, coarsest mesh";
