@@ -6,7 +6,6 @@
 // Written: one Piece, tets first, then faces. ParaView and meshio read it.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -55,9 +54,6 @@ struct VtuOptions {
 std::string format_vtu(const VtuData& data, const VtuOptions& options = {});
 std::string format_vtu_cells(std::span<const Tet> tets, std::span<const Triangle> faces,
                              VtuEncoding encoding);
-// Complete or absent (file_io.h). Error (io) if the system refuses.
-void write_vtu(const std::filesystem::path& path, const VtuData& data,
-               const VtuOptions& options = {});
 
 // A mesh with its labels as cell array "region" and point array "label", positions in Float64.
 std::string format_vtu(const TetMesh& mesh, VtuEncoding encoding);

@@ -18,10 +18,8 @@ class Page {
   explicit Page(std::string title);
 
   Page& heading(std::string_view text);  // a section; several of them get a list of contents
-  Page& subheading(std::string_view text);
   Page& paragraph(std::string_view text);
   Page& list(const std::vector<std::string>& items);
-  Page& preformatted(std::string_view text);  // keeps its lines: a command, a scene
   Page& table(const Table& table);
   Page& figure(const Plot& plot, std::string_view caption = {});
   Page& figure(const BarChart& chart, std::string_view caption = {});
