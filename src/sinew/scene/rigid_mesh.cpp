@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-
 [[noreturn]] void refuse(const SceneObstacle& o, const std::string& what,
                          const std::string& remedy) {
   throw Error(ErrorKind::input, fmt::format("the mesh of [obstacle.{}] {}", o.name, what), remedy,
