@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sinew/report/html.h"
+#include "sinew/report/json.h"
 #include "sinew/report/table.h"
 #include "sinew/report/text.h"
 #include "sinew/scene/laws.h"
@@ -248,10 +249,6 @@ report::BarChart variants_chart(const CaseResult& result) {
   return chart;
 }
 
-nlohmann::ordered_json number(double x) {
-  return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
-}
-
 }  // namespace
 
 std::string to_text(const SuiteResult& result) {
@@ -296,12 +293,13 @@ nlohmann::ordered_json to_json(const SuiteResult& result) {
       nlohmann::ordered_json values = nlohmann::ordered_json::object();
       for (const Value& v : r.values) {
         if (v.trial != t) continue;
-        values[v.quantity] = {{"value", number(v.value)},
-                              {"reference", number(v.reference)},
-                              {"reference_error", number(v.reference_error)},
-                              {"error", number(v.error)},
-                              {"limit", v.limit ? number(*v.limit) : nlohmann::ordered_json()},
-                              {"holds", v.holds}};
+        values[v.quantity] = {
+            {"value", report::finite_or_null(v.value)},
+            {"reference", report::finite_or_null(v.reference)},
+            {"reference_error", report::finite_or_null(v.reference_error)},
+            {"error", report::finite_or_null(v.error)},
+            {"limit", v.limit ? report::finite_or_null(*v.limit) : nlohmann::ordered_json()},
+            {"holds", v.holds}};
       }
       trials.push_back({{"law", trial.law},
                         {"variant", trial.variant},
@@ -310,7 +308,7 @@ nlohmann::ordered_json to_json(const SuiteResult& result) {
                         {"tets", trial.tets},
                         {"inverted_tets", trial.inverted_tets},
                         {"volume_ratio", trial.volume_ratio},
-                        {"residual", number(trial.residual)},
+                        {"residual", report::finite_or_null(trial.residual)},
                         {"seconds", trial.seconds},
                         {"failure", trial.failure},
                         {"values", values}});
@@ -320,7 +318,7 @@ nlohmann::ordered_json to_json(const SuiteResult& result) {
   }
   nlohmann::ordered_json medians = nlohmann::ordered_json::object();
   for (const LawChoice& law : law_choices())
-    medians[law.name] = number(median_error_coarsest(result, law.name));
+    medians[law.name] = report::finite_or_null(median_error_coarsest(result, law.name));
   return {{"version", SINEW_VERSION},  {"holds", result.holds()},    {"stopped", result.stopped},
           {"seconds", result.seconds}, {"median_coarsest", medians}, {"cases", cases}};
 }
