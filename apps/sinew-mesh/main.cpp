@@ -17,6 +17,7 @@
 #include "report.h"
 #include "sinew/base/error.h"
 #include "sinew/base/text.h"
+#include "sinew/io/file_io.h"
 #include "sinew/io/mesh_io.h"
 
 using namespace sinew;
@@ -87,12 +88,10 @@ double parse_length(const std::string& text, const std::string& option, double s
 
 // The ending has to be one that can be written, before anything is computed.
 void check_output(const Arguments& a) {
-  std::string ending = fs::path(a.output).extension().string();
-  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  const auto& known = io::mesh_endings();
-  if (std::find(known.begin(), known.end(), ending) == known.end()) {
+  const std::string ending = io::lower_extension(a.output);
+  if (!io::is_mesh_name(a.output)) {
     std::string list;
-    for (const std::string& e : known) list += (list.empty() ? "" : " ") + e;
+    for (const std::string& e : io::mesh_endings()) list += (list.empty() ? "" : " ") + e;
     throw Error(ErrorKind::usage,
                 ending.empty() ? std::string("has no ending that says its format")
                                : fmt::format("has the unknown ending \"{}\"", ending),

@@ -9,6 +9,7 @@
 #include "sinew/mesh/edges.h"
 #include "sinew/mesh/size.h"
 #include "sinew/mesh/surface.h"
+#include "sinew/report/json.h"
 
 namespace sinew::mesher {
 namespace {
@@ -18,14 +19,6 @@ constexpr double volume_tolerance = 0.02;  // relative, without a warning
 
 double percent(double mesh, double input) {
   return input > 0 ? 100 * (mesh / input - 1) : 0;
-}
-
-nlohmann::ordered_json to_json(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-nlohmann::ordered_json to_json(const Statistics& s) {
-  return {{"min", s.min}, {"mean", s.mean}, {"max", s.max}};
 }
 
 void warn_of_parts(const TetMesh& mesh, Report& r) {
@@ -143,7 +136,7 @@ nlohmann::ordered_json to_json(const Report& r) {
               {"scale", r.scale},
               {"size", r.size},
               {"distance", r.distance},
-              {"extent", to_json(r.extent)},
+              {"extent", report::to_json(r.extent)},
               {"usable", !r.examined || r.examined->usable()}};
   out["findings"] = json::array();
   if (r.examined) {
@@ -168,7 +161,7 @@ nlohmann::ordered_json to_json(const Report& r) {
   }
   if (r.image) {
     out["voxels"] = r.voxels;
-    out["spacing"] = to_json(r.spacing);
+    out["spacing"] = report::to_json(r.spacing);
   }
   out["output"] = r.output.empty() ? json() : json(r.output);
   out["volumes"] = json::array();
@@ -183,10 +176,10 @@ nlohmann::ordered_json to_json(const Report& r) {
   if (r.output.empty()) return out;
   out["nodes"] = r.nodes;
   out["tets"] = r.tets;
-  out["edge_length"] = to_json(r.quality.edge_length);
-  out["dihedral_angle"] = to_json(r.quality.dihedral_angle);
+  out["edge_length"] = report::to_json(r.quality.edge_length);
+  out["dihedral_angle"] = report::to_json(r.quality.dihedral_angle);
   out["dihedral_angle"]["histogram"] = r.quality.dihedral_histogram;
-  out["radius_ratio"] = to_json(r.quality.radius_ratio);
+  out["radius_ratio"] = report::to_json(r.quality.radius_ratio);
   out["warnings"] = r.warnings;
   out["seconds"] = r.seconds;
   return out;

@@ -1,4 +1,4 @@
-// sinew bench: what Sinew costs on this machine.
+// sinew bench: the cost of Sinew on this machine.
 #include "sinew/study/bench.h"
 
 #include <fmt/format.h>
@@ -62,7 +62,7 @@ void show(bool terminal, int done, int count, const std::string& name) {
   std::fflush(stderr);
 }
 
-// The peer beside this binary; empty where there is none.
+// The peer beside this binary; empty if there is none.
 std::string peer_beside() {
   std::error_code failed;
   const fs::path self = fs::read_symlink("/proc/self/exe", failed);
@@ -70,7 +70,7 @@ std::string peer_beside() {
   return !failed && fs::exists(peer, failed) ? peer.string() : "";
 }
 
-// What a program prints.
+// The output of a program.
 std::string output_of(const std::string& program, const std::vector<std::string>& arguments) {
   int ends[2];
   if (pipe(ends) != 0) throw Error(ErrorKind::io, "no pipe for " + program, "close some files");

@@ -1,4 +1,4 @@
-// sinew converge: does the answer depend on the mesh?
+// sinew converge: the dependence of a result on the mesh.
 #include "sinew/study/converge.h"
 
 #include <fmt/format.h>

@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -11,6 +10,7 @@
 #include "commands.h"
 #include "scale_option.h"
 #include "sinew/base/error.h"
+#include "sinew/io/file_io.h"
 #include "sinew/io/mesh_io.h"
 #include "sinew/mesh/doctor.h"
 
@@ -38,13 +38,6 @@ struct Arguments {
   bool force = false;
   std::string format;
 };
-
-std::string lower_ending(const fs::path& path) {
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending;
-}
 
 // The options of --format NAME for the ending of the output.
 io::WriteOptions write_options(const std::string& ending, const std::string& name) {
@@ -103,7 +96,7 @@ void print_repair(const RepairReport& report) {
 }
 
 void convert(const Arguments& a) {
-  const std::string ending = lower_ending(a.out);
+  const std::string ending = io::lower_extension(a.out);
   const io::WriteOptions options = write_options(ending, a.format);
   const std::vector<fs::path> existing = existing_outputs(a.out, ending);
   if (!existing.empty() && !a.force) {

@@ -1,4 +1,4 @@
-// The options that go with a scene of the course framework.
+// The options for a scene of the course framework.
 #pragma once
 
 #include <CLI/CLI.hpp>

@@ -1,4 +1,4 @@
-// sinew identify: what every law makes of a material on a given mesh.
+// sinew identify: the moduli that each law gives a material on a given mesh.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -14,6 +14,7 @@
 #include "sinew/io/mesh_io.h"
 #include "sinew/mesh/doctor.h"
 #include "sinew/report/html.h"
+#include "sinew/report/json.h"
 #include "sinew/report/text.h"
 
 using namespace sinew;
@@ -72,7 +73,7 @@ json to_json(const LawIdentity& l) {
   for (std::size_t i = 0; i < l.curve.stretch.size(); ++i) {
     const double s = l.curve.stress[i];
     curve.push_back({{"stretch", l.curve.stretch[i]},
-                     {"stress", std::isfinite(s) ? json(s) : json()},
+                     {"stress", report::finite_or_null(s)},
                      {"expected", l.curve.expected[i]}});
   }
   out["curve"] = curve;

@@ -1,4 +1,4 @@
-// sinew info: the mesh doctor.
+// sinew info: diagnosis of a mesh.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,6 +17,7 @@
 #include "sinew/mesh/quality.h"
 #include "sinew/mesh/size.h"
 #include "sinew/mesh/surface.h"
+#include "sinew/report/json.h"
 
 using namespace sinew;
 
@@ -36,7 +37,7 @@ struct Arguments {
   bool json = false;
 };
 
-// What can be measured where every tet names finite nodes.
+// Measurements for a mesh whose tets name finite nodes.
 struct Measures {
   Index edges = 0;
   Quality quality;
@@ -59,7 +60,7 @@ struct Report {
 };
 
 Measures measure(TetMesh mesh, double scale) {
-  orient(mesh);  // the doctor has told; here inverted tets would only spoil the sums
+  orient(mesh);  // inverted tets are already reported; here they would only distort the sums
   Measures m;
   const EdgeTable edges = build_edges(mesh.tets, mesh.node_count());
   m.edges = edges.edge_count();
@@ -86,14 +87,6 @@ Report examine(const Arguments& a) {
   return report;
 }
 
-nlohmann::ordered_json to_json(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-nlohmann::ordered_json to_json(const Statistics& s) {
-  return {{"min", s.min}, {"mean", s.mean}, {"max", s.max}};
-}
-
 nlohmann::ordered_json to_json(const Report& report) {
   using json = nlohmann::ordered_json;
   json out = {{"file", report.file},
@@ -111,19 +104,19 @@ nlohmann::ordered_json to_json(const Report& report) {
     const Quality& q = m.quality;
     out["edges"] = m.edges;
     out["components"] = m.components;
-    out["box"] = {{"min", to_json(q.box_min)},
-                  {"max", to_json(q.box_max)},
-                  {"size", to_json(Vec3(q.box_max - q.box_min))}};
+    out["box"] = {{"min", report::to_json(q.box_min)},
+                  {"max", report::to_json(q.box_max)},
+                  {"size", report::to_json(Vec3(q.box_max - q.box_min))}};
     out["volume"] = q.volume;
     out["regions"] = json::array();
     for (const Region& r : m.regions) {
       out["regions"].push_back({{"label", r.label}, {"tets", r.tets}, {"volume", r.volume}});
     }
-    out["edge_length"] = to_json(q.edge_length);
-    out["tet_volume"] = to_json(q.tet_volume);
-    out["dihedral_angle"] = to_json(q.dihedral_angle);
+    out["edge_length"] = report::to_json(q.edge_length);
+    out["tet_volume"] = report::to_json(q.tet_volume);
+    out["dihedral_angle"] = report::to_json(q.dihedral_angle);
     out["dihedral_angle"]["histogram"] = q.dihedral_histogram;
-    out["radius_ratio"] = to_json(q.radius_ratio);
+    out["radius_ratio"] = report::to_json(q.radius_ratio);
     out["surface"] = {{"triangles", m.surface_triangles},
                       {"area", m.surface_area},
                       {"components", m.surface_components}};
@@ -159,7 +152,7 @@ void print_histogram(const Quality& quality) {
   for (auto bin = first; bin < last; ++bin) {
     const auto count = static_cast<double>(*bin);
     const auto low = 10 * (bin - bins.begin());
-    // At least one mark for a bin that is not empty: the rare extreme angles are what matters.
+    // At least one mark for a bin that is not empty: the rare extreme angles matter.
     const auto marks = static_cast<std::size_t>(40 * count / largest + (count > 0 ? 0.999 : 0));
     fmt::print("  {:>3} - {:<3} {:>8.3f} %  {}\n", low, low + 10, 100 * count / total,
                std::string(marks, '#'));

@@ -1,4 +1,4 @@
-// The command line: parses, calls the library, turns errors into text and exit codes.
+// The command line: parses arguments, calls the library, converts errors into text and exit codes.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <exception>

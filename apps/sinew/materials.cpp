@@ -69,7 +69,7 @@ nlohmann::ordered_json to_json(const Tissue& t) {
   return out;
 }
 
-// The words of a text in lines of at most 96 characters, each behind `indent` spaces.
+// A text in lines of at most 96 characters, each indented by `indent` spaces.
 std::string wrapped(const std::string& text, int indent) {
   constexpr int kWidth = 96;
   const std::string margin(static_cast<std::size_t>(indent), ' ');

@@ -1,4 +1,4 @@
-// What a run shows while it goes on and when it is done.
+// The display of a run while it is running and at its end.
 #pragma once
 
 #include <chrono>
@@ -6,7 +6,7 @@
 
 #include "sinew/run/run.h"
 
-// A bar on the terminal's last line: simulated time, speed against real time, time that remains.
+// A bar on the terminal's last line: simulated time, speed against real time, remaining time.
 class ProgressBar {
  public:
   // Draws nothing unless `wanted` and standard error is a terminal.

@@ -46,7 +46,7 @@ void add_common(CLI::App& command, Arguments& a) {
       ->default_str("all");
 }
 
-// out/NAME, or out/NAME-2 ... where that is taken: a run never overwrites another unasked.
+// out/NAME, or out/NAME-2 ... if that exists: a run overwrites another only on request.
 fs::path fresh_folder(const std::string& name) {
   fs::path folder = fs::path("out") / name;
   for (int n = 2; fs::exists(folder); ++n) folder = fs::path("out") / fmt::format("{}-{}", name, n);

@@ -39,7 +39,7 @@ Examples:
 
 struct Arguments {
   std::string scene;   // empty: the gallery
-  std::string scenes;  // its folder; empty: where it usually is
+  std::string scenes;  // its folder; empty: the usual place
   std::vector<std::string> set;
   FrameworkOptions framework;
   std::string host = "127.0.0.1";
@@ -56,8 +56,8 @@ sigset_t end_signals() {
   return signals;
 }
 
-// Waits for Ctrl-C or SIGTERM on a thread of its own, and stops the server. Signals have to be
-// blocked before any other thread starts. A second Ctrl-C kills.
+// Waits for Ctrl-C or SIGTERM on a separate thread, and stops the server. Signals must be blocked
+// before any other thread starts. A second Ctrl-C kills.
 class StopOnSignal {
  public:
   explicit StopOnSignal(server::Server& server)
@@ -81,7 +81,7 @@ class StopOnSignal {
   std::jthread thread_;
 };
 
-// Asks the desktop to show the page; where there is none, the printed address has to do.
+// Asks the desktop to show the page. Without a desktop only the address is printed.
 void open_browser(std::string url) {
 #ifdef __APPLE__
   std::string program = "open";
@@ -108,8 +108,8 @@ void open_browser(std::string url) {
   posix_spawn_file_actions_destroy(&quiet);
 }
 
-// The folder of the shipped scenes: below the working directory, in the source tree that the
-// program was built in, or installed beside it.
+// The folder of Sinew's scenes: below the working directory, in the source tree of the build, or
+// installed beside the program.
 std::filesystem::path find_scenes() {
   std::error_code ignored;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
@@ -121,7 +121,7 @@ std::filesystem::path find_scenes() {
   return {};
 }
 
-// What is behind the gallery until one has chosen.
+// The scene behind the gallery before a choice.
 std::string first_scene(const std::filesystem::path& scenes) {
   const std::filesystem::path file = scenes / "liver.toml";
   std::error_code ignored;

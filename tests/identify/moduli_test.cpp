@@ -4,25 +4,17 @@
 
 #include <string>
 
-#include "sinew/base/error.h"
-#include "sinew/identify/calibrate.h"
 #include "sinew/io/mesh_io.h"
 #include "sinew/mesh/doctor.h"
 #include "sinew/mesh/shapes.h"
+#include "tests/identify/support.h"
 #include "tests/support/effort.h"
 #include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
 
-BodySpec body_of(const TetMesh& mesh, const Material& material) {
-  BodySpec body;
-  body.name = "body";
-  body.mesh = mesh;
-  body.materials = {material};
-  body.regions = {"all"};
-  return body;
-}
+using test::body_of;
 
 TetMesh liver() {
   TetMesh mesh = io::read_mesh(test::source_path("scenes/meshes/liver-10mm.mesh"));
@@ -99,27 +91,6 @@ TEST(Moduli, ShowHowFarOffTheClassicLawsAre) {
       moduli_of(measure_stiffness(body_of(mesh, material), TestKind::displacement));
   EXPECT_GT(moved.bulk, pulled.bulk);
   EXPECT_GT(moved.shear, pulled.shear);
-}
-
-TEST(Calibrate, MatchesYoungAndPoissonOnThisMesh) {
-  for (const TetMesh& mesh : {box(Vec3(0.1, 0.1, 0.1), {4, 4, 4}, 0.3), sphere(0.05, 4)}) {
-    for (const double poisson : {0.35, 0.45}) {
-      if (test::sanitized && poisson < 0.4) continue;
-      Material material;
-      material.law = Law::calibrated;
-      material.young = 9e3;
-      material.poisson = poisson;
-      BodySpec body = body_of(mesh, material);
-      calibrate_materials(body);
-      const Moduli m = moduli_of(measure_stiffness(body, TestKind::traction));
-      EXPECT_NEAR(m.young, 9e3, 1e-4 * 9e3);
-      EXPECT_NEAR(m.poisson, poisson, 1e-4);
-    }
-  }
-}
-
-TEST(Calibrate, RefusesWhatSpringsCannotHave) {
-  EXPECT_THROW(calibrate(box(Vec3(0.1, 0.1, 0.1), {3, 3, 3}), 0.1), Error);
 }
 
 }  // namespace

@@ -1,14 +1,9 @@
 // The writer of frames: what stands in the file, and that nothing wrong can be written.
 #include "sinew/io/vtu.h"
 
-#include <array>
-#include <filesystem>
-#include <fstream>
 #include <pugixml.hpp>
 
 #include "sinew/base/error.h"
-#include "sinew/io/file_io.h"
-#include "sinew/io/pvd.h"
 #include "tests/io/two_tets.h"
 
 namespace sinew::io {
@@ -106,30 +101,6 @@ TEST(Vtu, AnEmptyMeshIsWrittenAndRefusedByTheReader) {
   } catch (const Error& error) {
     EXPECT_EQ(error.message(), "holds no tetrahedra");
   }
-}
-
-TEST(Pvd, ListsTimesAndFiles) {
-  const std::array entries = {PvdEntry{0, "a_0000.vtu"}, PvdEntry{1.0 / 3.0, "a & \"b\".vtu"}};
-  EXPECT_EQ(format_pvd(entries),
-            "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\">\n<Collection>\n"
-            "<DataSet timestep=\"0\" part=\"0\" file=\"a_0000.vtu\"/>\n"
-            "<DataSet timestep=\"0.3333333333333333\" part=\"0\" file=\"a &amp; "
-            "&quot;b&quot;.vtu\"/>\n</Collection>\n</VTKFile>\n");
-}
-
-TEST(FileIo, WritingReplacesTheWholeFileAndLeavesNoOther) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / "sinew_file_io_test";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
-  write_file(folder / "a", "long old content");
-  write_file(folder / "a", "new");
-  EXPECT_EQ(read_file(folder / "a"), "new");
-  write_pvd(folder / "b.pvd", {});
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 2);
-  EXPECT_THROW(write_file(folder, "x"), Error);
-  EXPECT_THROW(write_file(folder / "missing" / "a", "x"), Error);
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -248,45 +248,6 @@ TEST(Build, ObstaclesAreHardUnlessTheyHaveAStiffness) {
   EXPECT_LT((m.obstacles[3].rotation.col(1) + Vec3::UnitX()).norm(), 1e-15);
 }
 
-TEST(Build, BodiesStartFlatInvertedOrRandom) {
-  const std::string scene = R"(
-[body.first]
-shape = "box"
-[body.b]
-shape = "box"
-size = [0.3, 0.1, 0.2]
-cells = [3, 2, 3]
-position = [0, 1, 0]
-[pin.end]
-body = "b"
-select = { side = "-x" }
-)";
-  const Model rest = build(scene);
-  EXPECT_TRUE(rest.start_position.empty());
-  const auto first = static_cast<std::size_t>(rest.bodies[1].nodes.begin);
-  for (const char* word : {"flat", "inverted", "random"}) {
-    const Model m = build(scene, {std::string("b.start=") + word});
-    EXPECT_EQ(m.rest_position, rest.rest_position);
-    EXPECT_NE(m.hash(), rest.hash());
-    const State s = initial_state(m);
-    for (std::size_t i = 0; i < s.position.size(); ++i) {
-      const Vec3& x = s.position[i];
-      const Vec3& X = m.rest_position[i];
-      if (i < first || m.inverse_mass[i] == 0.0) {
-        EXPECT_EQ(x, X);
-      } else if (word == std::string("flat")) {
-        EXPECT_LT((x - Vec3(X.x(), 1.0, X.z())).norm(), 1e-15);
-      } else if (word == std::string("inverted")) {
-        EXPECT_LT((x - Vec3(X.x(), 2.0 - X.y(), X.z())).norm(), 1e-15);
-      } else {
-        EXPECT_TRUE(
-            ((x - Vec3(0, 1, 0)).cwiseAbs().array() <= Vec3(0.15, 0.05, 0.1).array()).all());
-        EXPECT_NE(x, X);
-      }
-    }
-  }
-}
-
 TEST(Build, KeyFramesDeform) {
   const Model m = build(R"(
 [body.b]
@@ -357,29 +318,6 @@ TEST(Build, RepairsAndKeepsTheFilesNodeIds) {
   EXPECT_EQ(error("{ face_label = 1 }"),
             "scene.toml:4:10: 'select' of [probe.p] wants face_label = 1, which body 'b' does not "
             "have\n  remedy: its mesh has face_label 5");
-}
-
-TEST(Build, SelectsByPlace) {
-  const auto nodes = [](const std::string& select) {
-    return build(
-               "[body.b]\nshape = \"box\"\nsize = [2, 2, 2]\ncells = [2, 2, 2]\n[probe.p]\nselect "
-               "= " +
-               select + "\n")
-        .probes[0]
-        .nodes;
-  };
-  EXPECT_EQ(nodes("{ all = true }").size(), 27U);
-  EXPECT_EQ(nodes("{ surface = true }").size(), 26U);
-  EXPECT_EQ(nodes("{ side = \"+x\" }").size(), 9U);
-  EXPECT_EQ(nodes("{ side = \"-y\", depth = 1 }").size(), 18U);
-  EXPECT_EQ(
-      nodes("{ side = \"+x\", half_space = { point = [0, 0, 0], normal = [0, 1, 0] } }").size(),
-      6U);
-  EXPECT_EQ(nodes("{ box = { min = [0, 0, 0], max = [1, 1, 1] } }").size(), 8U);
-  EXPECT_EQ(nodes("{ sphere = { center = [0, 0, 0], radius = 1 } }").size(), 7U);
-  EXPECT_EQ(nodes("{ nearest = [0.1, 0.1, 0.1] }"), (std::vector<Index>{13}));
-  EXPECT_EQ(nodes("{ nearest = [0.1, 0.1, 0.2], surface = true }"), (std::vector<Index>{22}));
-  EXPECT_EQ(nodes("{ label = 0 }").size(), 27U);
 }
 
 TEST(Build, NamesWhatCannotBeBuilt) {

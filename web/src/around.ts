@@ -1,4 +1,4 @@
-// What is around the 3D scene: plots, gallery, files, everything to save, messages.
+// The parts around the 3D view: plots, gallery, files, saving, messages.
 import { DropZone } from "./drop";
 import { pack, post } from "./files";
 import { Gallery } from "./gallery";
@@ -10,12 +10,12 @@ import type { Command, Text } from "./protocol";
 import { SaveMenu } from "./save";
 import "./around.css";
 
-/** What it needs of the scene it is around. */
+/** The parts of the view that it uses. */
 export interface Inside {
   canvas: HTMLCanvasElement;
   send(command: Command): boolean;
   picture(done: (png: Blob | null) => void): void;
-  draw(): void; // once more, though nothing has changed
+  draw(): void; // draws again, although nothing has changed
   resized(): void;
 }
 
@@ -56,7 +56,7 @@ export class Around {
     const drop = new DropZone((files) => void this.take(files));
     this.buttons = [this.gallery.button, this.plots.button, this.save.button];
     this.elements = [this.save.element, this.save.recording, this.notice.element, this.opening.element, this.gallery.element, drop.element];
-    document.body.append(this.plots.element); // below the rest, which gives it its place
+    document.body.append(this.plots.element); // below the rest of the page
     this.keys = {
       d: () => this.plots.toggle(),
       e: () => this.save.toggle(),
@@ -93,7 +93,7 @@ export class Around {
     this.opening.end();
   }
 
-  /** Why something was not done. What keeps a scene from being opened stays until it is closed. */
+  /** Shows an error. An error that prevents a scene from opening stays until it is closed. */
   complain(message: string): void {
     this.notice.show(message, this.opening.pending);
     this.opening.end();
@@ -104,7 +104,7 @@ export class Around {
     if (this.inside.send(command)) this.opening.begin(title);
   }
 
-  /** Sends files and opens what they make. */
+  /** Sends files and opens the scene that they form. */
   private async take(files: File[]): Promise<void> {
     if (!this.controls) return this.notice.show(WATCHING);
     if (this.sending) return this.notice.show("Other files are still on their way");

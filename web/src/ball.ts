@@ -1,31 +1,31 @@
-// The ball tool: press on the tissue, and a rigid ball comes there and is pushed in while you hold;
-// drag moves it sideways. Where the ball really is, the simulation says (spheres.ts).
+// The ball tool: press on the tissue, and a rigid ball appears there and is pushed in while you hold;
+// drag moves it sideways. The simulation gives the actual position of the ball (spheres.ts).
 import * as THREE from "three";
 import { glass, GLASS_ORDER } from "./glass";
 import type { Picker } from "./picker";
 import type { Command, SphereStatus, Vec } from "./protocol";
 import type { Stage } from "./stage";
 
-const PUSH_TIME = 220; // [ms] that the way in takes, roughly
-const FLATTEST = 0.4; // cosine between ray and surface, below which the ball is not drawn back further
+const PUSH_TIME = 220; // [ms], approximate duration of the push
+const FLATTEST = 0.4; // smallest cosine between ray and surface for which the ball is drawn back
 const NOTCH = 0.1; // of the radius, for one press of a key or notch of the wheel
 export const DEEPEST = 2; // radii
 
 export class BallTool {
   mayPush = false; // this browser has the controls
   radius = 0.02; // [m]
-  /** How far in it is pushed, in radii, from where it touches. */
+  /** Depth of the push from first touch, in radii. */
   depth = 0.6;
-  /** Told when keys or wheel change the depth. */
+  /** Called when keys or wheel change the depth. */
   deepened: () => void = () => {};
   private on = false;
   private pointer = -1; // that pushes
   private readonly plane = new THREE.Plane();
-  private readonly inward = new THREE.Vector3(); // along which it is pushed
-  private readonly target = new THREE.Vector3(); // of the centre, in the plane of the picture
+  private readonly inward = new THREE.Vector3(); // direction of the push
+  private readonly target = new THREE.Vector3(); // of the centre, in the image plane
   private pushed = 0; // beyond the plane [m]
   private sent = "";
-  private there = false; // in its full size, as far as one has heard
+  private there = false; // at its full size, as last reported
   private now = 0; // [ms]
   private readonly preview: THREE.Mesh;
 
@@ -61,7 +61,7 @@ export class BallTool {
     this.foresee(null);
   }
 
-  /** Less deep (below zero) or deeper, by notches. */
+  /** Changes the depth by notches; negative is less deep. */
   deepen(notches: number): void {
     this.depth = THREE.MathUtils.clamp(this.depth + NOTCH * notches, 0, DEEPEST);
     this.deepened();
@@ -73,7 +73,7 @@ export class BallTool {
     this.send({ type: "ball" });
   }
 
-  /** The ball is gone: a reset, another scene, or the controls were taken. */
+  /** The ball was removed: a reset, another scene, or loss of the controls. */
   forget(): void {
     this.pointer = -1;
     this.sent = "";
@@ -82,13 +82,12 @@ export class BallTool {
     this.stage.controls.enabled = true;
   }
 
-  /** The ball that the simulation has: while that is not there or still small, one sees where it is
-   * to be. */
+  /** The ball of the simulation. While it is absent or still growing, its target is shown. */
   hear(ball: SphereStatus | null): void {
     this.there = ball !== null && ball.radius > 0.5 * this.radius;
   }
 
-  /** Once per picture: pushes on, and sends where the ball is to be. */
+  /** Once per frame: continues the push and sends the target of the ball. */
   update(now: number): void {
     const passed = Math.min(now - this.now, 100);
     this.now = now;
@@ -102,7 +101,7 @@ export class BallTool {
     if (key !== this.sent && this.send(message)) this.sent = key;
   }
 
-  /** Where the centre is when the ball touches the tissue there, still under the pointer. */
+  /** The centre at which the ball touches the tissue at that point, under the pointer. */
   private touching(hit: THREE.Intersection, along: THREE.Vector3): THREE.Vector3 {
     const slope = hit.normal ? Math.abs(hit.normal.dot(along)) : 1;
     return hit.point.clone().addScaledVector(along, -this.radius / Math.max(slope, FLATTEST));
@@ -144,7 +143,7 @@ export class BallTool {
     this.deepen(-Math.sign(event.deltaY || event.deltaX));
   }
 
-  /** Shows where the ball would come; null: nowhere. */
+  /** Shows the place where the ball would appear; null: none. */
   private foresee(center: THREE.Vector3 | null): void {
     if (center === null && !this.preview.visible) return;
     this.preview.visible = center !== null;

@@ -12,9 +12,9 @@ export interface Line {
 
 export interface ChartOptions {
   unit: string;
-  floor: number; // what the axis shows at least of, so that noise does not fill it
+  floor: number; // smallest range of the axis, so that noise does not fill it
   lines: Line[];
-  /** Told which sample is pointed at; null: none, the newest counts. */
+  /** Called with the sample under the pointer; null: none, the newest counts. */
   pointed: (index: number | null) => void;
   zoomed: (is: boolean) => void;
 }
@@ -25,7 +25,7 @@ const QUIET = "#a3b1bf";
 const FONT = '11px system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", sans-serif';
 const PREFIXES: [number, string][] = [[1e9, "G"], [1e6, "M"], [1e3, "k"], [1, ""], [1e-3, "m"], [1e-6, "µ"], [1e-9, "n"]];
 
-/** The numbers of an axis: one prefix for all, and as many digits as tell them apart. */
+/** The numbers of an axis: one prefix for all, and enough digits to distinguish them. */
 export function ticks(values: number[], unit: string): string[] {
   const most = Math.max(...values.map(Math.abs), 0);
   const apart = values.length > 1 ? Math.abs(values[1] - values[0]) : most;
@@ -34,7 +34,7 @@ export function ticks(values: number[], unit: string): string[] {
       ? [1, ""]
       : (PREFIXES.find(([f]) => most >= f * 0.9999) ?? PREFIXES[PREFIXES.length - 1]);
   const count = (v: number) => Math.min(12, Math.max(1, Math.ceil(Math.log10(Math.abs(v) / apart) + 1e-9) + 2));
-  // Steps of an axis have two digits at most (2.5); zero is often only nearly so.
+  // Steps of an axis have at most two digits (2.5); zero is often only approximate.
   return values.map((v) => `${Math.abs(v) < 1e-6 * apart ? "0" : digits(v / factor, count(v))} ${prefix}${unit}`);
 }
 
@@ -77,7 +77,7 @@ export class Chart {
 
   set(data: Data): void {
     this.times = data[0];
-    // A zoom stays where it is while the simulation goes on, but not where there is nothing left.
+    // A zoom stays while the simulation continues, unless no samples are left in it.
     const zoom = this.zoom && this.zoom.min < (this.times.at(-1) ?? 0) ? this.zoom : null;
     if (!zoom) return this.plot.setData(data, true);
     this.plot.batch(() => {
@@ -97,7 +97,7 @@ export class Chart {
     }
   }
 
-  /** Everything again. */
+  /** Shows the whole range again. */
   whole(): void {
     if (this.times.length > 0) this.plot.setScale("x", { min: this.times[0], max: this.times[this.times.length - 1] });
   }
@@ -115,7 +115,7 @@ export class Chart {
     return high - low < span ? [middle - 0.6 * span, middle + 0.6 * span] : [low - 0.08 * span, high + 0.08 * span];
   }
 
-  /** The range of time has changed, by whomever. */
+  /** The range of time has changed. */
   private scaled(): void {
     const { min, max } = this.plot.scales.x;
     const [first, last] = [this.times[0], this.times[this.times.length - 1]];
@@ -124,7 +124,7 @@ export class Chart {
     this.options.zoomed(part);
   }
 
-  /** A finger reads values; it has no way to hover. */
+  /** A touch reads values, because it cannot hover. */
   private touch(event: PointerEvent): void {
     if (event.pointerType !== "touch") return;
     const { left, top } = this.plot.over.getBoundingClientRect();

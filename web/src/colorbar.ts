@@ -31,7 +31,7 @@ export class ColorBar {
     }
     const shares = info.signed ? [1, 0.5, 0, -0.5, -1] : [1, 0.75, 0.5, 0.25, 0];
     const texts = shares.map((s) => (info.signed && s > 0 ? "+" : "") + quantity(s * top, info.unit));
-    // Stray values may be out of the bar: its ends say so.
+    // Outliers may be beyond the bar: its ends show that.
     if (above) texts[0] = `≥ ${texts[0]}`;
     if (below && info.signed) texts[4] = `≤ ${texts[4]}`;
     this.element.className = "bar";

@@ -1,5 +1,5 @@
-// Colour maps that people with any colour vision can read: lightness alone tells the order. Made
-// from a few anchors, straight between them in OKLab (Ottosson 2020), where steps look even.
+// Colour maps for any colour vision: lightness alone gives the order. They interpolate a few anchors
+// linearly in OKLab (Ottosson 2020), a perceptually uniform space.
 
 type Rgb = [number, number, number]; // sRGB, 0 to 1
 
@@ -35,7 +35,7 @@ const hex = (text: string): Rgb => [1, 3, 5].map((i) => parseInt(text.slice(i, i
 export class ColorMap {
   static readonly size = 256;
   readonly srgb: Rgb[] = [];
-  /** 3 linear components each: what the vertices of a mesh take. */
+  /** 3 linear components each, for the vertices of a mesh. */
   readonly linear = new Float32Array(3 * ColorMap.size);
 
   constructor(anchors: string[]) {
@@ -66,7 +66,7 @@ export class ColorMap {
   }
 }
 
-/** From nothing to much: dark blue, through grey violet and orange, to pale yellow. */
+/** From small to large: dark blue, through grey violet and orange, to pale yellow. */
 export const sequential = new ColorMap(["#2a3f9d", "#6a4fb0", "#b0579b", "#e0746c", "#f7b055", "#fdf3b0"]);
 /** Around zero: blue below, pale in the middle, orange brown above. */
 export const diverging = new ColorMap(["#0b4a8f", "#4f93c8", "#e9edf0", "#e39a52", "#8c3a06"]);

@@ -1,4 +1,4 @@
-// Comparing laws: which one with, and how both bodies are shown.
+// Comparison of laws: the second law, and the display of both bodies.
 import { type Arrangement, SAME_PLACE } from "./compared";
 import { h } from "./dom";
 import { fill, section, select } from "./form";
@@ -13,7 +13,7 @@ export class CompareControl {
   private readonly show: HTMLElement;
   private readonly words = h("p", { id: "distance", role: "status" });
 
-  /** `arranged`: told how both are to be shown, when somebody chooses it. */
+  /** `arranged`: called with the chosen display of both bodies. */
   constructor(send: (command: Command) => boolean, arranged: (how: Arrangement) => void) {
     this.law.input.id = "compare-law";
     this.law.row.querySelector("label")!.htmlFor = "compare-law";
@@ -49,7 +49,7 @@ export class CompareControl {
 
 export function distanceInWords({ largest, mean }: { largest: number; mean: number }): string {
   if (largest < SAME_PLACE) return "Both are in the same place";
-  // Tenths of a millimetre, too, are said in millimetres.
+  // Tenths of a millimetre are also shown in millimetres.
   const text = (metres: number) => (metres >= 1e-4 && metres < 1e-2 ? `${digits(1e3 * metres, 2)} mm` : length(metres, 2));
   const unbroken = (metres: number) => text(metres).replace(" ", "\u00a0");
   return `Largest distance ${unbroken(largest)}, mean ${unbroken(mean)}`;

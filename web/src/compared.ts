@@ -12,7 +12,7 @@ export type Arrangement = "over" | "beside";
 const ICE = linearOf("#5cc4e8"); // of the glass
 const DEEP = linearOf("#2a6a86"); // of the solid body
 const APART = 1.1; // of the body's extent, from middle to middle
-export const SAME_PLACE = 1e-7; // [m]: what is nearer is not apart
+export const SAME_PLACE = 1e-7; // [m]: smaller distances count as zero
 const ABOVE = 34; // [px] of the labels over the bodies
 const ROW = 28;
 const SEEN_THROUGH = 1.5; // largest distances
@@ -20,7 +20,7 @@ const SEEN_THROUGH = 1.5; // largest distances
 export class Compared {
   readonly group: THREE.Group;
   arrangement: Arrangement = "over";
-  /** From the first body to where this one is drawn [m]. */
+  /** Offset of this body's drawing from the first body [m]. */
   readonly shift = new THREE.Vector3();
   private readonly nearer = { value: 0 }; // [m]
   private readonly surface = new Surface({ clear: 0.1, rim: 0.62, nearer: this.nearer });
@@ -45,7 +45,7 @@ export class Compared {
     this.surface.build(corners);
     this.ice = new Float32Array(3 * nodes).map((_, i) => ICE[i % 3]);
     this.deep = new Float32Array(3 * nodes).map((_, i) => DEEP[i % 3]);
-    this.group.visible = false; // until a frame says where it is
+    this.group.visible = false; // until a frame has its position
   }
 
   /** Titles of the laws of both bodies; none: nothing is compared. */
@@ -55,16 +55,16 @@ export class Compared {
     this.tell(0);
   }
 
-  /** How far the bodies are apart at most [m]. */
+  /** The largest distance of the bodies [m]. */
   tell(largest: number): void {
     if (!this.titles) return;
-    // Where it lies inside the first body it is seen all the same, but not through anything else.
+    // It is visible inside the first body, but not through anything else.
     this.nearer.value = SEEN_THROUGH * largest;
     this.labels[0].write(this.titles[0]);
     this.labels[1].write(this.titles[1] + (largest > SAME_PLACE ? ` · up to ${length(largest, 2)} away` : ""));
   }
 
-  /** `across`: where the camera's right is now. */
+  /** `across`: the camera's current direction to the right. */
   arrange(how: Arrangement, box: THREE.Box3, across: THREE.Vector3): void {
     this.arrangement = how;
     this.surface.setGlass(how === "over");
@@ -74,7 +74,7 @@ export class Compared {
     this.group.position.copy(this.shift);
   }
 
-  /** Positions [m] and colours by node; the latter only where both bodies have the same. */
+  /** Positions [m] and colours by node; colours only if both bodies share them. */
   show(x: Float32Array | null, colors: Float32Array | null): void {
     this.group.visible = x !== null;
     if (!x) return;
@@ -84,7 +84,7 @@ export class Compared {
     this.surface.paint(beside ? (colors ?? this.deep) : this.ice);
   }
 
-  /** Once per picture: the names above the bodies. `first`: the bounds of the first one. */
+  /** Once per frame: the names above the bodies. `first`: the bounds of the first one. */
   update(stage: Stage, first: THREE.Box3): void {
     if (!this.shown) return;
     const over = this.arrangement === "over";
@@ -100,7 +100,7 @@ function extentAlong(box: THREE.Box3, axis: THREE.Vector3): number {
   return Math.abs(size.x * axis.x) + Math.abs(size.y * axis.y) + Math.abs(size.z * axis.z);
 }
 
-/** The middle of the upper edge of what a box takes up in the picture, from -1 to 1. */
+/** The middle of the upper edge of a box in the image, from -1 to 1. */
 function topOf(box: THREE.Box3, camera: THREE.Camera): THREE.Vector3 {
   const seen = new THREE.Box3();
   for (const corner of cornersOf(box)) seen.expandByPoint(corner.project(camera));

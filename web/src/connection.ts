@@ -1,4 +1,4 @@
-// The socket to the server: comes back by itself when it is lost.
+// The socket to the server; it reconnects when the connection is lost.
 import { type Command, type Frame, type Text, type Topology, decode } from "./protocol";
 
 export interface Listener {

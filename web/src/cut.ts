@@ -1,4 +1,4 @@
-// The cut: which half of the body is left out, by a direction and a slider.
+// The cut: the hidden half of the body, by a direction and a slider.
 import * as THREE from "three";
 import { h, iconButton } from "./dom";
 import { length } from "./format";
@@ -24,7 +24,7 @@ export class CutControl {
   private readonly normal = new THREE.Vector3(0, 0, 1);
   private box = new THREE.Box3();
 
-  /** `towardsViewer`: the direction from what is seen to who sees it. */
+  /** `towardsViewer`: the direction from the body to the camera. */
   constructor(
     private readonly send: (command: Command) => boolean,
     private readonly towardsViewer: () => THREE.Vector3,
@@ -67,7 +67,7 @@ export class CutControl {
     this.slider.refresh();
   }
 
-  /** The cut that the server has: this viewer's, or another's. */
+  /** The cut of the server: this viewer's, or another's. */
   hear(cut: CutPlane | null): void {
     this.show(cut !== null);
     if (!cut) return;
@@ -111,7 +111,7 @@ export class CutControl {
     return low + share * (high - low);
   }
 
-  /** How far the body reaches along the direction, from and to [m]. */
+  /** Extent of the body along the direction, from and to [m]. */
   private reach(): [number, number] {
     if (this.box.isEmpty()) return [0, 0];
     const middle = this.box.getCenter(new THREE.Vector3()).dot(this.normal);

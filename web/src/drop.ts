@@ -10,7 +10,7 @@ export class DropZone {
   constructor(take: (files: File[]) => void) {
     const over = (event: DragEvent) => {
       if (!hasFiles(event)) return;
-      event.preventDefault(); // else the browser would leave for the file
+      event.preventDefault(); // otherwise the browser would open the file
       event.dataTransfer!.dropEffect = "copy";
       this.show(true);
     };

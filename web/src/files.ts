@@ -1,20 +1,20 @@
-// Files for the server: which of those that were dropped make a scene, and sending them.
+// Files for the server: selects those of a scene among the dropped files, and sends them.
 
 export const SCENE = ".toml";
 export const MESHES = [".mesh", ".vtk", ".vtu", ".msh", ".node", ".ele"];
-export const MOST_BYTES = 64 * 1024 * 1024; // that the server takes of one file
+export const MOST_BYTES = 64 * 1024 * 1024; // limit of the server for one file
 const MOST_TOGETHER = 4 * MOST_BYTES;
 
 export interface Parcel<F> {
-  files: { file: F; name: string }[]; // with the names that the server takes
-  open: string; // the one to open then
+  files: { file: F; name: string }[]; // with names that the server accepts
+  open: string; // the file to open afterwards
 }
 
 const ending = (name: string) => name.slice(Math.max(0, name.lastIndexOf("."))).toLowerCase();
 const stem = (name: string) => name.slice(0, name.length - ending(name).length);
 const megabytes = (bytes: number) => `${(bytes / 1024 / 1024).toFixed(1)} MiB`;
 
-/** Puts together what is to be sent. Throws an Error that says why it cannot be opened. */
+/** Collects the files to send. Throws an Error with the reason if they cannot be opened. */
 export function pack<F extends { name: string; size: number }>(files: F[]): Parcel<F> {
   const odd = files.filter((f) => ![SCENE, ...MESHES].includes(ending(f.name)));
   if (odd.length > 0) {
@@ -31,7 +31,7 @@ export function pack<F extends { name: string; size: number }>(files: F[]): Parc
   if (scenes.length > 1) throw new Error(`${scenes.map((f) => f.name).join(", ")}: one scene at a time, please`);
   const taken = /^[A-Za-z0-9._-]+$/;
   if (scenes.length === 1) {
-    // The scene names its meshes: they cannot be called anything else.
+    // The scene names its meshes, so they must keep their names.
     const bad = files.find((f) => f !== scenes[0] && !taken.test(f.name));
     if (bad) throw new Error(`${bad.name}: the name of a mesh that a scene uses may have letters, digits, “.”, “_” and “-” only; rename it here and in the scene`);
     return { files: files.map((file) => ({ file, name: plain(file.name) })), open: plain(scenes[0].name) };
@@ -49,18 +49,18 @@ export function pack<F extends { name: string; size: number }>(files: F[]): Parc
   return { files: files.map((file) => ({ file, name: plain(file.name) })), open: plain(first.name) };
 }
 
-/** The name with what the server does not take replaced. */
+/** The name without characters that the server does not accept. */
 function plain(name: string): string {
   return name.replaceAll(/[^A-Za-z0-9._-]/g, "_");
 }
 
-/** Sends a file; `progress` hears the share that is there. Rejects with what the server says. */
+/** Sends a file; `progress` receives the share sent. Rejects with the message of the server. */
 export function post(file: Blob, name: string, ticket: string, progress: (share: number) => void): Promise<void> {
   const query = new URLSearchParams(location.search);
   query.set("name", name);
   query.set("ticket", ticket);
   return new Promise((done, failed) => {
-    // Not fetch(): it does not tell how far it is.
+    // Not fetch(): it reports no progress.
     const request = new XMLHttpRequest();
     request.open("POST", `/files?${query}`);
     request.upload.addEventListener("progress", (e) => e.lengthComputable && progress(e.loaded / e.total));

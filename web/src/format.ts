@@ -1,4 +1,4 @@
-// Numbers with units, as people read them.
+// Numbers with units, for readers.
 
 const PREFIXES: [number, string][] = [
   [1e9, "G"],
@@ -37,7 +37,7 @@ export function percent(value: number, count = 3): string {
   return `${digits(100 * value, count)} %`;
 }
 
-/** What a quantity of the protocol is shown as. */
+/** The displayed form of a quantity of the protocol. */
 export function quantity(value: number, unit: string, count = 2): string {
   if (unit === "") return percent(value, count);
   return unit === "m" ? length(value, count) : si(value, unit, count);

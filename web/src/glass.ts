@@ -1,9 +1,9 @@
-// A look that one can see through: clear where it faces the viewer, denser towards its rim.
+// A transparent material: clear where it faces the viewer, denser towards its rim.
 import * as THREE from "three";
 
-const RIM = 1.4; // how sharply the rim grows denser
+const RIM = 1.4; // sharpness of the rim
 
-// Of what lies in the same place, so that both are not seen in patches.
+// Depth offset for coincident surfaces, which would otherwise show in patches.
 const IN_FRONT = { polygonOffset: true, polygonOffsetFactor: -1, polygonOffsetUnits: -4 };
 
 export interface GlassOptions {
@@ -11,7 +11,7 @@ export interface GlassOptions {
   vertexColors?: boolean;
   clear: number; // opacity where it faces the viewer
   rim: number; // and at its rim
-  /** How much nearer than it is it counts as, where it is a question of what hides what [m]. */
+  /** Offset towards the viewer in depth comparisons [m]. */
   nearer?: { value: number };
 }
 
@@ -40,16 +40,16 @@ export function glass({ color = 0xffffff, vertexColors = false, clear, rim, near
   return material;
 }
 
-/** Written before the glass itself, so that only its nearest side is seen. */
+/** Drawn before the glass itself, so that only its nearest side is visible. */
 export function nearestOnly(nearer = { value: 0 }): THREE.MeshBasicMaterial {
-  // In the list of what is clear, or what is opaque and behind it would not be drawn.
+  // Sorted with the transparent objects; otherwise opaque objects behind it would not be drawn.
   const material = new THREE.MeshBasicMaterial({ colorWrite: false, transparent: true, ...IN_FRONT });
   material.onBeforeCompile = (shader) => pull(shader, nearer);
   material.customProgramCacheKey = () => "nearest only";
   return material;
 }
 
-/** Changes the depth alone, not the place in the picture. */
+/** Changes only the depth, not the position in the image. */
 function pull(shader: THREE.WebGLProgramParametersWithUniforms, nearer: { value: number }): void {
   shader.uniforms.nearer = nearer;
   shader.vertexShader = `uniform float nearer;\n${shader.vertexShader.replace(

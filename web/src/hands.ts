@@ -1,4 +1,4 @@
-// Pulling and pinning: the pointer on the tissue becomes a hand of the protocol.
+// Pulling and pinning: the pointer on the tissue becomes a grab of the protocol (`hand`).
 import * as THREE from "three";
 import { si } from "./format";
 import { Label } from "./labels";
@@ -7,12 +7,12 @@ import type { Command, HandInfo, Vec } from "./protocol";
 import type { Stage } from "./stage";
 import type { Tissue } from "./tissue";
 
-const PULLING = 0; // the hand of the pointer; those from 1 on are pins
+const PULLING = 0; // the grab of the pointer; numbers from 1 on are pins
 const MOST_HANDS = 16;
 
 interface Held {
-  node: number; // -1: a cut has taken it out of sight
-  rest: THREE.Vector3; // of the node: by that it is found again
+  node: number; // -1: hidden by a cut
+  rest: THREE.Vector3; // of the node, which identifies it in a new topology
   target: THREE.Vector3;
   arrow: THREE.Group;
   label: Label;
@@ -42,12 +42,12 @@ export class Hands {
     }
   }
 
-  /** Hands as the simulation knows them. */
+  /** The grabs of the simulation. */
   hear(hands: HandInfo[]): void {
     this.known = new Map(hands.map((h) => [h.hand, h]));
   }
 
-  /** Nodes have other numbers: what is held stays held. */
+  /** The topology has new node numbers: grabs keep their nodes. */
   renumber(): void {
     for (const held of this.held.values()) held.node = this.tissue.nodeAtRest(held.rest);
   }
@@ -56,7 +56,7 @@ export class Hands {
     for (const hand of [...this.held.keys()]) this.release(hand);
   }
 
-  /** What is held is gone: another scene, or a reset. */
+  /** All grabs were removed: another scene, or a reset. */
   forget(): void {
     for (const hand of [...this.held.keys()]) this.remove(hand);
     this.pointer = -1;
@@ -70,7 +70,7 @@ export class Hands {
     return this.held.size - (this.pulling ? 1 : 0);
   }
 
-  /** Once per picture: sends the last move, puts arrows and labels in place. */
+  /** Once per frame: sends the last move, places arrows and labels. */
   update(): void {
     const pull = this.held.get(PULLING);
     if (this.moved && pull) this.send({ type: "drag", hand: PULLING, point: pull.target.toArray() as Vec });

@@ -22,7 +22,7 @@ export class Hint {
     try {
       localStorage.setItem(SEEN, "yes");
     } catch {
-      // A browser that keeps nothing shows it again the next time.
+      // A browser without storage shows it again the next time.
     }
   }
 }

@@ -1,4 +1,4 @@
-// What the plots and the CSV hold: a sample of every status message since the start, in bounded
+// The data of the plots and the CSV: a sample of every status message since the start, in bounded
 // memory.
 import type { SceneInfo, Status, Vec } from "./protocol";
 
@@ -6,13 +6,13 @@ export interface Column {
   group: string; // the plot it belongs to
   title: string;
   unit: string; // SI; "%" for shares
-  of: (s: Status) => number | null; // null: there is none now
+  of: (s: Status) => number | null; // null: no value
 }
 
 const MOST = 6000; // samples
 const size = (v: Vec) => Math.hypot(...v);
 
-/** What can be seen of a scene over time. */
+/** The recorded quantities of a scene. */
 export function columnsOf(scene: SceneInfo): Column[] {
   const energy = (key: keyof Status["energy"], title: string): Column => ({
     group: "energy", title, unit: "J", of: (s) => s.energy[key],
@@ -27,7 +27,7 @@ export function columnsOf(scene: SceneInfo): Column[] {
     energy("dissipated", "Dissipated"),
     energy("work_in", "Work put in"),
     {
-      // As in energy.csv of a run: constant but for the error of the steps.
+      // As in energy.csv of a run: constant except for the error of the steps.
       group: "energy", title: "Total", unit: "J",
       of: ({ energy: e }) => e.kinetic + e.elastic + e.gravity + e.contact + e.dissipated - e.work_in,
     },
@@ -52,11 +52,11 @@ export class History {
   values: (number | null)[][] = []; // of each column
   private scene = "";
   private stride = 1; // statuses from one sample to the next
-  private since = 0; // statuses since the last sample that stays; the newest one is always there
+  private since = 0; // statuses since the last permanent sample; the newest one is always present
 
   constructor(private readonly most = MOST) {}
 
-  /** Starts anew when the scene is another one. Returns whether it is. */
+  /** Restarts for another scene. Returns whether it is another. */
   begin(scene: SceneInfo): boolean {
     const key = JSON.stringify([scene.opened, scene.name, scene.probes, scene.obstacles]);
     if (key === this.scene) return false;

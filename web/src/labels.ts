@@ -1,4 +1,4 @@
-// Words that stay at a place of the scene.
+// Labels at positions in the scene.
 import * as THREE from "three";
 import type { Stage } from "./stage";
 
@@ -15,12 +15,12 @@ export class Label {
     if (this.element.textContent !== text) this.element.textContent = text;
   }
 
-  /** Beside a point [m]: so many pixels to the right and below it. */
+  /** Places it beside a point [m], offset by pixels to the right and below. */
   place(stage: Stage, point: THREE.Vector3, right: number, below: number): void {
     this.put(stage, this.on.copy(point).project(stage.camera), right, below);
   }
 
-  /** The same beside a place of the picture, from -1 to 1. */
+  /** The same beside a position in the image, from -1 to 1. */
   put(stage: Stage, { x, y, z }: THREE.Vector3, right: number, below: number): void {
     const { clientWidth: w, clientHeight: h } = stage.canvas;
     this.element.style.visibility = z < 1 ? "" : "hidden"; // not behind the viewer

@@ -1,4 +1,4 @@
-// The page of sinew view: puts its parts together. docs/view.md says what it does.
+// The page of sinew view: assembles its parts. docs/view.md describes it.
 import * as THREE from "three";
 import { Around } from "./around";
 import { ColorBar, ScaleBar } from "./colorbar";
@@ -17,7 +17,7 @@ import "./tools.css";
 import { Tools } from "./tools";
 import { World } from "./world";
 
-const SLOW = 0.95; // of the time scale: less is said to be slower than real time
+const SLOW = 0.95; // of the time scale: a lower rate is reported as slower than real time
 const NARROW = 760; // [px] below which panel and options lie over the view, one at a time
 
 class App {
@@ -84,7 +84,7 @@ class App {
     requestAnimationFrame((now) => this.draw(now));
   }
 
-  /** What tests look at. */
+  /** State for tests. */
   get state() {
     const { tissue, hands, ball, spheres, shown } = this.world;
     return {
@@ -107,7 +107,7 @@ class App {
       obstacles: spheres.obstaclesAt,
       drawn: this.framesDrawn,
       samples: this.around.plots.history.length,
-      /** Where a node is on the page [px]. */
+      /** Position of a node on the page [px]. */
       onPage: (node: number) => {
         const p = tissue.point(node, new THREE.Vector3()).project(this.stage.camera);
         const r = this.stage.canvas.getBoundingClientRect();
@@ -116,8 +116,8 @@ class App {
     };
   }
 
-  /** For the pictures of the documentation: sees everything as it is now, from a direction, with so much
-   * room around it (1: none). */
+  /** For the pictures of the documentation: shows everything from a direction, with a margin factor
+   * (1: none). */
   look(from: Vec, room?: number): void {
     this.world.look(from, room);
   }
@@ -153,7 +153,7 @@ class App {
     return this.connection.send(command);
   }
 
-  // ---- what the server says ----
+  // ---- messages of the server ----
 
   private hear(message: Text): void {
     this.around.hear(message, performance.now());
@@ -232,7 +232,7 @@ class App {
     this.around.complain(message);
   }
 
-  // ---- what the user does ----
+  // ---- actions of the user ----
 
   private togglePlay(): void {
     this.send({ type: "play", running: !(this.status?.running ?? false) });

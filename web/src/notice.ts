@@ -1,4 +1,4 @@
-// What went wrong, said long enough to be read.
+// Error messages, shown long enough to be read.
 import { h, iconButton } from "./dom";
 
 const SHORTEST = 9000; // [ms]
@@ -11,7 +11,7 @@ export class Notice {
 
   constructor() {
     this.element = h("div", { id: "alert", role: "alert" }, this.text, iconButton("close", "Close the message", "", () => this.hide()));
-    // Whoever points at it still reads it.
+    // It stays while the pointer is on it.
     this.element.addEventListener("pointerenter", () => clearTimeout(this.timer));
     this.element.addEventListener("pointerleave", () => this.hideIn(SHORTEST));
   }

@@ -1,4 +1,4 @@
-// Says that files are on their way or a scene is being opened, until it is there.
+// Shows the progress of sending files and opening a scene.
 import { h } from "./dom";
 
 export class Opening {
@@ -27,7 +27,7 @@ export class Opening {
     this.pending = true;
   }
 
-  /** A scene is there, with the count of those opened. */
+  /** A scene has opened; with the count of opened scenes. */
   scene(opened: number): void {
     this.latest = opened;
     if (this.pending && opened > this.opened) this.end();

@@ -1,4 +1,4 @@
-// The card on the left: colouring, what lies over the surface, the cut.
+// The card on the left: colouring, overlays, the cut.
 import type { CutControl } from "./cut";
 import { h } from "./dom";
 import type { Command, SceneInfo } from "./protocol";
@@ -66,7 +66,7 @@ export class ViewOptions {
     this.followComparison(scene, names);
   }
 
-  /** What is compared is coloured by how far both bodies are apart, until somebody chooses otherwise. */
+  /** A comparison is coloured by the distance of both bodies, until another colouring is chosen. */
   private followComparison(scene: SceneInfo, names: string[]): void {
     const [was, is] = [this.compared, scene.compare];
     this.compared = is;

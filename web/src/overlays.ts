@@ -1,12 +1,12 @@
-// Lines and points over the surface: edges, ghost, pinned nodes, springs, nodes that touch something.
+// Lines and points over the surface: edges, ghost, pinned nodes, springs, nodes in contact.
 import * as THREE from "three";
 import type { Topology } from "./protocol";
 
 export type Overlay = "wireframe" | "ghost" | "pins" | "springs" | "contacts";
 
-const SPRING_OPACITY = 0.9; // of a thousand; the more lie behind each other, the clearer each is
+const SPRING_OPACITY = 0.9; // for a thousand springs; with more springs each is clearer
 const CONTACT_PIXELS = 11;
-const THROUGH = 0.3; // how much of a mark is seen through what hides it
+const THROUGH = 0.3; // opacity of a mark behind another surface
 
 export class Overlays {
   readonly group = new THREE.Group();
@@ -36,7 +36,7 @@ export class Overlays {
       new THREE.BufferGeometry(),
       new THREE.LineBasicMaterial({ vertexColors: true, transparent: true, depthWrite: false }),
     );
-    // A mark lies between two bodies as a rule: what hides it lets it shine through.
+    // A mark usually lies between two bodies, so it is visible through them.
     const map = ringTexture();
     this.contacts = [1, THROUGH].map((opacity) => new THREE.Points(
       new THREE.BufferGeometry(),
@@ -85,14 +85,14 @@ export class Overlays {
     this.position.needsUpdate = true;
   }
 
-  /** Three linear components a node; what springs have at their ends. */
+  /** Three linear components a node, the colours of spring ends. */
   paint(colors: Float32Array): void {
     if (!this.springs.visible) return;
     (this.color.array as Float32Array).set(colors);
     this.color.needsUpdate = true;
   }
 
-  /** Marks the nodes that touch something: those that are 1. */
+  /** Marks the nodes in contact: those with the value 1. */
   touch(contact: Uint8Array | null): void {
     let count = 0;
     contact?.forEach((is, node) => {
@@ -103,7 +103,7 @@ export class Overlays {
   }
 }
 
-/** A pale disc with a dark rim: seen on any colour, by anybody. */
+/** A pale disc with a dark rim: visible on any colour. */
 function ringTexture(): THREE.Texture {
   const canvas = document.createElement("canvas");
   canvas.width = canvas.height = 64;
@@ -128,7 +128,7 @@ function edgesOf(triangles: Uint32Array): Uint32Array {
   for (let t = 0; t < triangles.length; t += 3) {
     for (let c = 0; c < 3; ++c) {
       const [a, b] = [triangles[t + c], triangles[t + ((c + 1) % 3)]];
-      if (a < b) edges.push(a, b); // the neighbour has it the other way round
+      if (a < b) edges.push(a, b); // the neighbour has it in the other direction
     }
   }
   return Uint32Array.from(edges);

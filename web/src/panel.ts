@@ -1,4 +1,4 @@
-// The panel: what may be changed, and what the simulation says of itself.
+// The panel: values to change, and the status of the simulation.
 import { h } from "./dom";
 import { fill, section, select } from "./form";
 import { digits, percent, si } from "./format";
@@ -85,7 +85,7 @@ export class Panel {
     );
   }
 
-  /** Everything but what concerns only this page. */
+  /** Everything except the parts that concern only this page. */
   setEnabled(on: boolean): void {
     for (const input of this.element.querySelectorAll<HTMLInputElement | HTMLSelectElement>("input:not(.own), select")) {
       input.disabled = !on;
@@ -152,7 +152,7 @@ export class Panel {
     ]);
   }
 
-  /** The part whose values are shown: where everything is meant, the first. */
+  /** The part whose values are shown; for the whole scene the first. */
   private showPart(): void {
     const chosen = this.part.input.value;
     const part = this.scene?.parts[chosen === EVERYTHING || chosen === "" ? 0 : Number(chosen)];

@@ -1,4 +1,4 @@
-// What is under the pointer.
+// Finds the point under the pointer.
 import * as THREE from "three";
 import type { Stage } from "./stage";
 import type { Tissue } from "./tissue";
@@ -11,13 +11,13 @@ export class Picker {
     private readonly tissue: Tissue,
   ) {}
 
-  /** Where the ray under the pointer first meets tissue. */
+  /** First intersection of the ray under the pointer with tissue. */
   hit(event: MouseEvent): THREE.Intersection | null {
     this.ray.setFromCamera(this.place(event), this.stage.camera);
     return this.ray.intersectObject(this.tissue.mesh, false)[0] ?? null;
   }
 
-  /** Where that ray meets a plane; null where it does not. */
+  /** Intersection of that ray with a plane; null if there is none. */
   onPlane(event: MouseEvent, plane: THREE.Plane, to: THREE.Vector3): THREE.Vector3 | null {
     this.ray.setFromCamera(this.place(event), this.stage.camera);
     return this.ray.ray.intersectPlane(plane, to);

@@ -1,4 +1,4 @@
-// The drawer with plots of what the simulation says of itself ten times a second.
+// The drawer with plots of the status, which arrives ten times a second.
 import { Chart, type Line } from "./chart";
 import { h, iconButton } from "./dom";
 import { digits, si } from "./format";
@@ -10,7 +10,7 @@ interface Group {
   name: string;
   title: string;
   unit: string;
-  empty: string; // said where there is nothing to plot
+  empty: string; // text if there is nothing to plot
 }
 
 const GROUPS: Group[] = [
@@ -19,12 +19,12 @@ const GROUPS: Group[] = [
   { name: "volume", title: "Volume", unit: "%", empty: "" },
   { name: "force", title: "Force", unit: "N", empty: "" },
 ];
-// Told apart with any colour vision, on a dark ground (after Okabe and Ito).
+// Distinguishable with any colour vision, on a dark ground (after Okabe and Ito).
 const COLORS = ["#56b4e9", "#e69f00", "#2fbf8f", "#f0e442", "#e8684a", "#d58abb", "#a4a9ff", "#c9b18f"];
 const TOTAL = "#ffffff";
 const BETWEEN = 95; // pictures [ms]
 const NARROW = 760; // [px], as in the style sheets
-const LEAST = 1e-9; // less is said to be nothing [J, N, m]
+const LEAST = 1e-9; // smaller values are shown as zero [J, N, m]
 
 export class Plots {
   readonly element: HTMLElement;
@@ -42,7 +42,7 @@ export class Plots {
   private readonly when = h("span", { class: "when" });
   private readonly all = h("button", { type: "button", class: "text", title: "The whole time again (double click)" }, "All");
 
-  /** `changed`: told when the drawer takes or gives back its place. */
+  /** `changed`: called when the drawer opens or closes. */
   constructor(private readonly changed: () => void) {
     this.button = iconButton("plot", "Plots", "D", () => this.toggle());
     this.button.setAttribute("aria-expanded", "false");

@@ -1,4 +1,4 @@
-// The messages of docs/protocol.md, as this page reads them.
+// The messages of docs/protocol.md.
 
 export const PROTOCOL = 2;
 export const HEADER_BYTES = 40;
@@ -26,7 +26,7 @@ export interface QuantityInfo {
   signed: boolean;
 }
 
-/** A rigid thing of the scene. */
+/** An obstacle of the scene. */
 export interface ObstacleInfo {
   name: string;
   radius: number; // of a ball around it [m]; 0 of a plane
@@ -77,7 +77,7 @@ export interface HandInfo {
   force: Vec;
 }
 
-/** Where a rigid sphere is, and what pushes it. */
+/** Position of a rigid sphere, and the force on it. */
 export interface SphereStatus {
   center: Vec;
   radius: number; // [m]
@@ -179,7 +179,7 @@ interface Header {
   second: number;
 }
 
-/** Reads a binary message. Throws an Error on anything that is not one. */
+/** Reads a binary message. Throws an Error for any other data. */
 export function decode(bytes: ArrayBuffer): Topology | Frame {
   if (bytes.byteLength < HEADER_BYTES) throw new Error("a message shorter than its header");
   const view = new DataView(bytes);

@@ -1,9 +1,9 @@
-// The range of the colour bar: follows the large values without flicker, and not a few stray ones.
+// The range of the colour bar: follows the large values without flicker, but not outliers.
 import { niceAbove } from "./format";
 
 const CALM = 1500; // [ms] that values have to stay low before the range shrinks
-const USUAL = 0.995; // share of the nodes whose values are not stray
-const STRAY = 2; // times the largest usual value: above it a value is out of the bar
+const USUAL = 0.995; // share of the nodes whose values are no outliers
+const STRAY = 2; // times the largest usual value: larger values are beyond the bar
 const LOOKED_AT = 8192; // values at most
 
 export class Range {
@@ -19,7 +19,7 @@ export class Range {
     this.aboveAt = this.belowAt = -Infinity;
   }
 
-  /** Whether there are values above what the bar shows, or were a moment ago. */
+  /** Whether values exceed the bar, or did a moment ago. */
   get above(): boolean {
     return this.now - this.aboveAt < CALM;
   }
@@ -65,7 +65,7 @@ export class Range {
   }
 }
 
-/** The size that all but the stray values stay below. Of many values every so manyth is looked at. */
+/** The bound of all values except outliers. Of many values only a sample is used. */
 function usualSize(values: Float32Array): number {
   const every = Math.ceil(values.length / LOOKED_AT);
   const sizes = new Float32Array(Math.ceil(values.length / every));

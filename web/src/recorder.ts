@@ -11,15 +11,15 @@ const BITS_PER_SECOND = 12e6;
 const LONGEST = 600; // [s]: a video is kept in memory until it is saved
 
 export interface RecorderListener {
-  /** Something has to be drawn: a canvas that stands still gives no pictures. */
+  /** Requests a drawing: an unchanged canvas gives no frames. */
   draw(): void;
-  /** Called while it goes on, with its length so far [s], and with null when it has ended. */
+  /** Called during the recording with its length so far [s], and with null at its end. */
   tick(seconds: number | null): void;
   done(video: Blob, extension: string): void;
   failed(why: string): void;
 }
 
-/** What this browser can write; null: nothing. */
+/** The format that this browser can write; null: none. */
 export function videoKind(): { mime: string; extension: string } | null {
   if (typeof MediaRecorder === "undefined" || !("captureStream" in HTMLCanvasElement.prototype)) return null;
   const kind = KINDS.find(([mime]) => MediaRecorder.isTypeSupported(mime));

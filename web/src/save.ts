@@ -1,4 +1,4 @@
-// Everything that can be taken home, in one menu: picture, video, data of the plots, scene, state.
+// The menu of downloads: picture, video, data of the plots, scene, state.
 import { download, h, icon, iconButton } from "./dom";
 import { type History, toCsv } from "./history";
 import { Recorder, videoKind } from "./recorder";
@@ -8,7 +8,7 @@ export interface SaveSources {
   canvas: HTMLCanvasElement;
   history: History;
   picture(done: (png: Blob | null) => void): void;
-  draw(): void; // asks for a picture to be drawn
+  draw(): void; // requests a drawing
   complain(message: string): void;
 }
 
@@ -23,7 +23,7 @@ interface Entry {
 export class SaveMenu {
   readonly element: HTMLElement;
   readonly button: HTMLButtonElement;
-  /** A red dot and the time while a video is written; ends it. */
+  /** A red dot and the time during a recording; a click ends it. */
   readonly recording: HTMLButtonElement;
   private readonly recorder: Recorder;
   private readonly video: HTMLButtonElement;
@@ -36,7 +36,7 @@ export class SaveMenu {
     this.video = items[1];
     this.element = h("div", { id: "save-menu", role: "menu", "aria-label": "Save", hidden: true }, ...items);
     this.element.addEventListener("keydown", (e) => this.key(e));
-    // Elsewhere, a press or the focus closes it.
+    // A press or the focus elsewhere closes it.
     const left = (e: Event) => {
       const at = e.target as Node;
       if (this.open && !this.element.contains(at) && !this.button.contains(at)) this.toggle(false);

@@ -1,4 +1,4 @@
-// A slider with its number beside it; straight or logarithmic.
+// A slider with its number beside it; linear or logarithmic.
 import { h } from "./dom";
 
 export interface SliderOptions {
@@ -6,9 +6,9 @@ export interface SliderOptions {
   low: number;
   high: number;
   log?: boolean;
-  step?: number; // of the straight ones
+  step?: number; // of linear sliders
   show: (value: number) => string;
-  /** Told while the user moves it; no faster than every 50 ms. */
+  /** Called while the user moves it, at most every 50 ms. */
   changed: (value: number) => void;
 }
 
@@ -47,7 +47,7 @@ export class Slider {
     this.set(low);
   }
 
-  /** The value that the simulation has; not while the user moves the slider. */
+  /** The value of the simulation; ignored while the user moves the slider. */
   set(value: number): void {
     if (performance.now() - this.touched >= 700) this.put(value);
   }
@@ -59,7 +59,7 @@ export class Slider {
     this.write(value);
   }
 
-  /** What the value means has changed. */
+  /** The meaning of the value has changed. */
   refresh(): void {
     this.write(this.value);
   }

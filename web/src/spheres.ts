@@ -1,4 +1,4 @@
-// What is rigid: obstacles of the scene and the ball, where the simulation has them.
+// Rigid objects: obstacles of the scene and the ball, at their positions in the simulation.
 import * as THREE from "three";
 import { si } from "./format";
 import { glass, GLASS_ORDER, nearestOnly } from "./glass";
@@ -7,12 +7,12 @@ import type { ObstacleInfo, SphereStatus, Status, Vec } from "./protocol";
 import type { Stage } from "./stage";
 import { Track } from "./track";
 
-const LEAST_FORCE = 1e-3; // [N] that is worth a label
+const LEAST_FORCE = 1e-3; // [N], smallest force with a label
 const GROWTH = 0.3; // share of the way to another radius, a picture
 const SHAPE = new THREE.SphereGeometry(1, 64, 40);
 const PLANE = 4; // diagonals of the bodies that a plane is shown wide
 
-/** What an obstacle that is no sphere looks like, in its own axes and in metres. */
+/** The geometry of an obstacle other than a sphere, in its own axes and in metres. */
 function geometryOf(o: ObstacleInfo, diagonal: number): THREE.BufferGeometry | null {
   if (o.shape === "box") return new THREE.BoxGeometry(2 * o.half[0], 2 * o.half[1], 2 * o.half[2]);
   if (o.shape === "capsule") return new THREE.CapsuleGeometry(o.half[0], 2 * o.half[2], 16, 40).rotateX(Math.PI / 2);
@@ -26,7 +26,7 @@ function geometryOf(o: ObstacleInfo, diagonal: number): THREE.BufferGeometry | n
   return flat;
 }
 
-/** A rigid thing with its force, and once more beside a compared body. */
+/** A rigid object with its force, and a twin beside a compared body. */
 class Sphere {
   readonly group = new THREE.Group();
   readonly twin: THREE.Group;
@@ -102,7 +102,7 @@ export class Spheres {
     clearcoat: 0.7,
     clearcoatRoughness: 0.25,
   });
-  // Seen from both sides, and through: what is in a bowl or behind a wall matters.
+  // Visible from both sides and transparent: objects in a bowl or behind a wall matter.
   private readonly sheet = new THREE.MeshPhysicalMaterial({
     color: 0x8ea2b4,
     roughness: 0.45,
@@ -111,7 +111,7 @@ export class Spheres {
     opacity: 0.45,
     depthWrite: false,
   });
-  // One has to see what the ball does to the tissue behind it.
+  // The tissue behind the ball must be visible.
   private readonly amber = [nearestOnly(), glass({ color: 0xffc763, clear: 0.34, rim: 0.95 })];
 
   constructor(
@@ -121,7 +121,7 @@ export class Spheres {
     stage.scene.add(this.group);
   }
 
-  /** Where the ball is drawn [m]; null: there is none. */
+  /** Position of the drawn ball [m]; null: none. */
   get ballAt(): Vec | null {
     return this.ball ? (this.ball.group.position.toArray() as Vec) : null;
   }
@@ -151,7 +151,7 @@ export class Spheres {
     this.ball.hear(status.ball, status.time);
   }
 
-  /** The ball is gone. */
+  /** The ball was removed. */
   drop(): void {
     if (!this.ball) return;
     this.ball.remove();

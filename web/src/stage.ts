@@ -1,4 +1,4 @@
-// What the tissue stands in: camera, lights with soft shadows, ground with its grid.
+// The stage: camera, lights with soft shadows, ground with its grid.
 import * as THREE from "three";
 import { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 import { RoomEnvironment } from "three/examples/jsm/environments/RoomEnvironment.js";
@@ -40,7 +40,7 @@ interface Place {
   target: THREE.Vector3;
 }
 
-/** A way of the camera. */
+/** A motion of the camera. */
 interface Glide {
   from: Place;
   to: Place;
@@ -65,7 +65,7 @@ export class Stage {
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
-    // Without a graphics card a picture takes long: fewer pixels and less light then.
+    // Without a graphics card a frame takes long: fewer pixels and less light then.
     const context = this.renderer.getContext();
     const info = context.getExtension("WEBGL_debug_renderer_info");
     const name = info ? String(context.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
@@ -162,7 +162,7 @@ export class Stage {
     this.changed();
   }
 
-  /** Where the camera sees all of it, from a direction, beside what lies over the view. */
+  /** The position from which the camera sees all of it, from a direction, beside overlaid panels. */
   private placeFor(boxes: THREE.Box3[], direction: THREE.Vector3, room = ROOM): Place {
     const all = new THREE.Box3();
     for (const box of boxes) all.union(box);
@@ -186,7 +186,7 @@ export class Stage {
     this.place(this.home());
   }
 
-  /** Sees these bounds from a direction, at once. */
+  /** Shows these bounds from a direction, at once. */
   look(boxes: THREE.Box3[], direction: THREE.Vector3, room = ROOM): void {
     this.glide = null;
     this.place(this.placeFor(boxes, direction, room));
@@ -200,7 +200,7 @@ export class Stage {
     this.changed();
   }
 
-  /** The direction from what is seen to who sees it. */
+  /** The direction from the target to the camera. */
   towardsViewer(): THREE.Vector3 {
     return this.camera.getWorldDirection(new THREE.Vector3()).negate();
   }
@@ -210,7 +210,7 @@ export class Stage {
     this.changed();
   }
 
-  /** `covered`: pixels on the right that something lies over; the view is centred beside it. */
+  /** `covered`: covered pixels on the right; the view is centred beside them. */
   resize(width: number, height: number, covered: number): void {
     this.renderer.setPixelRatio(this.modest ? 0.75 * Math.min(window.devicePixelRatio, 1) : Math.min(window.devicePixelRatio, 2));
     this.renderer.setSize(width, height, false);
@@ -220,7 +220,7 @@ export class Stage {
     this.changed();
   }
 
-  /** Something looks different from now on. */
+  /** Requests a redraw. */
   changed(): void {
     this.stale = true;
   }
@@ -256,7 +256,7 @@ export class Stage {
     this.canvas.toBlob(done);
   }
 
-  /** Metres per pixel at the distance of what the camera looks at. */
+  /** Metres per pixel at the distance of the camera's target. */
   metresPerPixel(): number {
     const distance = this.camera.position.distanceTo(this.controls.target);
     const height = 2 * distance * Math.tan((this.camera.fov / 360) * Math.PI);

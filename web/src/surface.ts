@@ -1,4 +1,4 @@
-// The skin of one body: a mesh that follows positions and colours by node.
+// The surface of one body: a mesh with positions and colours by node.
 import * as THREE from "three";
 import { glass, GLASS_ORDER, type GlassOptions, nearestOnly } from "./glass";
 import type { Corners } from "./smooth";
@@ -12,7 +12,7 @@ export class Surface {
   private readonly veil: THREE.Mesh; // what hides the far sides of the glass
   private readonly solid: THREE.MeshPhysicalMaterial;
   private readonly clear: THREE.MeshPhysicalMaterial;
-  /** The bounds of what it shows [m]. */
+  /** The bounds of the surface [m]. */
   readonly box = new THREE.Box3();
   private nodeOf: Uint32Array = new Uint32Array();
 

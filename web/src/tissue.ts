@@ -1,4 +1,4 @@
-// The bodies as they are shown: their skin, what lies over it, and its colours.
+// The display of the bodies: surface, overlays, and colours.
 import * as THREE from "three";
 import { categories, ColorMap, diverging, linearOf, sequential } from "./colors";
 import { Compared } from "./compared";
@@ -31,7 +31,7 @@ export class Tissue {
     this.group.add(this.surface.group, this.overlays.group, this.compared.group);
   }
 
-  /** What the pointer can hit. */
+  /** The objects that the pointer can hit. */
   get mesh(): THREE.Mesh {
     return this.surface.mesh;
   }
@@ -49,7 +49,7 @@ export class Tissue {
     this.surface.build(corners);
     this.compared.build(corners, topology.region.length);
     this.overlays.build(topology);
-    // What is inside is seen through a surface of glass.
+    // The interior is visible through a surface of glass.
     this.surface.setGlass(topology.springs.length > 0);
     this.overlays.set("springs", topology.springs.length > 0);
     this.plain = plainColors(topology);
@@ -138,7 +138,7 @@ export class Tissue {
   }
 }
 
-/** What a quantity has to reach before its colours mean more than noise. */
+/** The smallest range at which the colours of a quantity mean more than noise. */
 function floorOf(name: string, scene: SceneInfo): number {
   const softest = Math.min(...scene.parts.map((p) => p.young));
   const floors: Record<string, number> = {

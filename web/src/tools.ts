@@ -1,4 +1,4 @@
-// What the pointer does to the tissue: pull, pin, or push with a ball. Buttons and the ball's values.
+// The tools of the pointer: pull, pin, or push with a ball. Buttons and the ball's values.
 import { DEEPEST } from "./ball";
 import type { BallTool } from "./ball";
 import { h, iconButton } from "./dom";

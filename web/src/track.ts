@@ -1,4 +1,4 @@
-// The way of something that is reported ten times a second, as it is at the time of each picture.
+// Interpolates positions that are reported ten times a second for the time of each frame.
 import * as THREE from "three";
 import type { Vec } from "./protocol";
 

@@ -9,7 +9,7 @@ std::string compose(const std::string& message, const std::string& remedy, const
   std::string text;
   if (!at.file.empty()) {
     text += at.file;
-    // Appended, not joined with +: g++ 12 sees an overlap there that is none (its bug 105651).
+    // Appended, not joined with +: g++ 12 warns of an overlap that does not exist (its bug 105651).
     if (at.line > 0) text.append(":").append(std::to_string(at.line));
     if (at.line > 0 && at.column > 0) text.append(":").append(std::to_string(at.column));
     text += ": ";

@@ -1,5 +1,5 @@
-// Floats too small for full precision count as zero while an object of this class lives, in its
-// thread: arithmetic on them takes a hundred times as long on many processors.
+// While an object of this class lives, denormal floats count as zero in its thread: arithmetic on
+// them takes a hundred times as long on many processors.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
-// A 64-bit hash of plain data: names a state, a scene or a mesh, so that two runs can be compared.
-// XXH64 of the bytes (xxhash.com). Not cryptographic.
+// A 64-bit hash of plain data. It identifies a state, a scene or a mesh, so that two runs can be
+// compared. XXH64 of the bytes (xxhash.com). Not cryptographic.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
-// Loops over many items on many threads, with results that do not depend on the thread count: the
-// items are cut into blocks of a fixed size, and sums are added up block by block in order.
+// Loops over many items on many threads. The results do not depend on the thread count: the items
+// are divided into blocks of a fixed size, and sums are added up block by block in order.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -12,7 +12,7 @@
 
 namespace sinew {
 
-// Items a block holds. Large enough to hide the cost of handing a block to a thread (about 1 us).
+// Items in a block. Large enough to hide the cost of passing a block to a thread (about 1 us).
 inline constexpr Index block_size = 1024;
 
 inline Index block_count(Index n) {
@@ -34,7 +34,7 @@ void parallel_blocks(Index n, const F& f) {
   tbb::parallel_for(Index{0}, blocks, [&](Index b) { f(b, block(b, n)); });
 }
 
-// Calls f(i) for every i in [0, n), each of them much work.
+// Calls f(i) for every i in [0, n). For tasks that are each much work.
 template <typename F>
 void parallel_tasks(Index n, const F& f) {
   if (n == 1) return f(0);
@@ -49,7 +49,7 @@ void parallel_for(Index n, const F& f) {
   });
 }
 
-// Combines f(range) of every block in the blocks' order, from `init` on.
+// Combines f(range) of every block in the order of the blocks, starting from `init`.
 template <typename T, typename F, typename Combine>
 T parallel_reduce(Index n, T init, const F& f, const Combine& combine) {
   std::vector<T> parts(static_cast<std::size_t>(block_count(n)), init);
@@ -71,7 +71,8 @@ double parallel_sum(Index n, const F& f) {
       [](double a, double b) { return a + b; });
 }
 
-// While it lives, at most `threads` threads run the loops above (0: as many as the machine has).
+// While an object of this class lives, at most `threads` threads run the loops above (0: all of the
+// machine).
 class ThreadLimit {
  public:
   explicit ThreadLimit(int threads);

@@ -1,5 +1,5 @@
-// Numbers that look random and are the same on every machine: a hash of a counter, so that number n
-// can be had without the ones before it. SplitMix64 (Steele, Lea, Flood 2014).
+// Pseudo-random numbers that are the same on every machine: a hash of a counter, so number n does
+// not depend on the ones before it. SplitMix64 (Steele, Lea, Flood 2014).
 #pragma once
 
 #include <cstdint>
@@ -8,7 +8,7 @@
 
 namespace sinew {
 
-// The n-th number of the sequence, evenly spread over [0, 1).
+// The n-th number of the sequence, uniformly distributed over [0, 1).
 inline double random_number(std::uint64_t n) {
   std::uint64_t z = (n + 1) * 0x9e3779b97f4a7c15ULL;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ULL;
@@ -17,7 +17,7 @@ inline double random_number(std::uint64_t n) {
   return static_cast<double>(z >> 11) * 0x1.0p-53;
 }
 
-// The n-th point of a sequence that is evenly spread over the unit cube [0, 1)^3.
+// The n-th point of a sequence, uniformly distributed over the unit cube [0, 1)^3.
 inline Vec3 random_point(std::uint64_t n) {
   return {random_number(3 * n), random_number(3 * n + 1), random_number(3 * n + 2)};
 }

@@ -6,14 +6,6 @@
 namespace sinew {
 namespace {
 
-std::string lower(std::string_view text) {
-  std::string result(text);
-  for (char& c : result) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return result;
-}
-
 // Optimal string alignment distance (Damerau 1964, Levenshtein 1966).
 std::size_t edits(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before(b.size() + 1), above(b.size() + 1), row(b.size() + 1);
@@ -35,13 +27,26 @@ std::size_t edits(std::string_view a, std::string_view b) {
 
 }  // namespace
 
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  for (char& c : result) {
+    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+  }
+  return result;
+}
+
+bool is_name_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
+         c == '-';
+}
+
 std::string nearest(std::string_view word, std::span<const std::string_view> known) {
   constexpr std::size_t kShortestStem = 4;
-  const std::string wanted = lower(word);
+  const std::string wanted = lower_case(word);
   std::string best;
   std::size_t fewest = 0;
   for (const std::string_view candidate : known) {
-    const std::string name = lower(candidate);
+    const std::string name = lower_case(candidate);
     const std::size_t shorter = std::min(wanted.size(), name.size());
     const std::size_t longer = std::max(wanted.size(), name.size());
     if (shorter == 0) continue;
@@ -56,7 +61,7 @@ std::string nearest(std::string_view word, std::span<const std::string_view> kno
   }
   if (!best.empty()) return best;
   for (const std::string_view candidate : known) {
-    const std::string name = lower(candidate);
+    const std::string name = lower_case(candidate);
     if (std::min(name.size(), wanted.size()) < kShortestStem) continue;
     if (wanted.starts_with(name) || name.starts_with(wanted)) return std::string(candidate);
   }

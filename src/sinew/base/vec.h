@@ -20,7 +20,7 @@ using Tet = std::array<Index, 4>;       // four node ids, positive signed volume
 
 inline constexpr double radians = std::numbers::pi / 180.0;  // in a degree
 
-// An index as a subscript: v[uz(i)] says that i is known not to be negative.
+// An index as a subscript. v[uz(i)] states that i is not negative.
 constexpr std::size_t uz(Index i) {
   return static_cast<std::size_t>(i);
 }

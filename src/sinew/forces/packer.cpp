@@ -8,7 +8,7 @@
 #include "sinew/forces/packed_groups.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/bisect.h"
-#include "sinew/mesh/fans.h"
+#include "sinew/mesh/edge_rings.h"
 
 namespace sinew {
 namespace {
@@ -64,13 +64,13 @@ class Packer {
       }
     }
     weigh_cells();
-    std::vector<std::vector<Fan>> fans(patches);
+    std::vector<std::vector<EdgeRing>> fans(patches);
     parallel_tasks(to_.patch_count(), [&](Index p) {
-      fans[uz(p)] = cut_into_fans(model_.tets, tets[uz(p)], model_.tet_region, longest_fan);
+      fans[uz(p)] = cut_into_edge_rings(model_.tets, tets[uz(p)], model_.tet_region, longest_fan);
     });
     for (std::size_t p = 0; p < patches; ++p) {
       begin_patch(static_cast<Index>(p));
-      group_by_length(std::move(fans[p]), [&](std::size_t length, std::span<const Fan> group) {
+      group_by_length(std::move(fans[p]), [&](std::size_t length, std::span<const EdgeRing> group) {
         make_room();
         pack_fans(length, group);
       });
@@ -209,7 +209,7 @@ class Packer {
 
   // --- tets ---
 
-  void pack_fans(std::size_t length, std::span<const Fan> fans) {
+  void pack_fans(std::size_t length, std::span<const EdgeRing> fans) {
     to_.fan_length_.push_back(static_cast<std::uint8_t>(length));
     const auto& X = model_.rest_position;
     const std::size_t corner = to_.fan_corner_.size();
@@ -222,13 +222,13 @@ class Packer {
     };
     Fields head(to_.fan_data_, fan_head_fields);
     for (std::size_t lane = 0; lane < fans.size(); ++lane) {
-      const Fan& fan = fans[lane];
+      const EdgeRing& fan = fans[lane];
       const auto t = uz(fan.tets[0]);
       const Vec3& origin = X[uz(fan.axis[0])];
       for (std::size_t e = 0; e < 2; ++e) put_corner(e, lane, fan.axis[e], t);
-      put_corner(2, lane, fan.ring[0], t);
+      put_corner(2, lane, fan.nodes[0], t);
       head.put(0, lane, X[uz(fan.axis[1])] - origin);
-      head.put(3, lane, X[uz(fan.ring[0])] - origin);
+      head.put(3, lane, X[uz(fan.nodes[0])] - origin);
       head.put(6, lane, model_.tet_shear[t] / 6.0);
       head.put(7, lane, model_.tet_bulk[t]);
       head.put(8, lane, model_.tet_bulk[t] > 0.0 ? 0.0 : model_.tet_modulus[t]);
@@ -237,10 +237,10 @@ class Packer {
       Fields fields(to_.fan_data_, fan_tet_fields);
       to_.tet_id_.resize(to_.tet_id_.size() + uz(packed_lanes), -1);
       for (std::size_t lane = 0; lane < fans.size(); ++lane) {
-        const Fan& fan = fans[lane];
+        const EdgeRing& fan = fans[lane];
         const auto t = uz(fan.tets[k]);
-        put_corner(k + 3, lane, fan.ring[k + 1], t);
-        fields.put(0, lane, X[uz(fan.ring[k + 1])] - X[uz(fan.axis[0])]);
+        put_corner(k + 3, lane, fan.nodes[k + 1], t);
+        fields.put(0, lane, X[uz(fan.nodes[k + 1])] - X[uz(fan.axis[0])]);
         fields.put(3, lane, 1.0 / model_.rest_volume[t]);
         double weights = 0.0;
         for (const Index c : model_.cells[t]) weights += c >= 0 ? weight_[uz(c)] : 0.0;

@@ -26,7 +26,7 @@ Moduli with_volume(const TetMesh& mesh, double poisson, double volume) {
   return moduli_of(measure_stiffness(body, TestKind::traction, 1e-6));
 }
 
-// What the ratio of the bulk to the shear modulus is for nu: K / G = 2 (1 + nu) / (3 (1 - 2 nu)).
+// Ratio of the bulk to the shear modulus for nu: K / G = 2 (1 + nu) / (3 (1 - 2 nu)).
 double bulk_over_shear(double poisson) {
   return 2.0 * (1.0 + poisson) / (3.0 * (1.0 - 2.0 * poisson));
 }
@@ -46,7 +46,7 @@ Calibration calibrate(const TetMesh& mesh, double poisson) {
                     poisson, m.poisson),
         "a larger 'poisson', or law = \"neo-hookean\"");
   }
-  // K/G grows almost linearly with kappa: secant steps on it, from the springs alone.
+  // K/G grows almost linearly with kappa: secant steps on it, starting from the springs alone.
   const double goal = bulk_over_shear(poisson);
   double before = 0.0;
   double value_before = m.bulk / m.shear;

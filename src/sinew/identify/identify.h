@@ -1,4 +1,5 @@
-// What every law makes of a material on a given mesh: `sinew identify`. docs/methods/identify.md.
+// The behaviour that each law gives a material on a given mesh: `sinew identify`.
+// docs/methods/identify.md.
 #pragma once
 
 #include <string>
@@ -8,22 +9,22 @@
 
 namespace sinew {
 
-// Mean nominal stress P_zz while the surface is stretched affinely along z, sideways as the asked
-// material does it when nothing holds its sides.
+// Mean nominal stress P_zz while the surface is stretched affinely along z, with the lateral
+// contraction of the given material with free sides.
 struct StressCurve {
   std::vector<double> stretch;   // lambda [-]
-  std::vector<double> stress;    // P_zz of the law [Pa]; NaN where no rest state was found
-  std::vector<double> expected;  // P_zz of the asked material (stable neo-Hookean) [Pa]
+  std::vector<double> stress;    // P_zz of the law [Pa]; NaN if no rest state was found
+  std::vector<double> expected;  // P_zz of the given material (stable neo-Hookean) [Pa]
 };
 
 struct LawIdentity {
   std::string law;            // "neo-hookean", "linear-fem", "calibrated", "lloyd", "vangelder"
-  std::string note;           // why it could not be measured; else empty
+  std::string note;           // why it could not be measured; otherwise empty
   Moduli traction;            // by tractions on the free surface
   Moduli displacement;        // by affine displacement of the surface
   double stable_step = 0.0;   // [s] at rest
   double step_seconds = 0.0;  // wall time of one explicit step (median) [s]
-  StressCurve curve;          // empty where not asked for
+  StressCurve curve;          // empty unless requested
 };
 
 struct AskedMaterial {
@@ -33,11 +34,11 @@ struct AskedMaterial {
   double damping_ratio = 0.1;  // [-]
 };
 
-// The names that identify_law knows, in the order of a report.
+// The names that identify_law accepts, in the order of a report.
 std::vector<std::string> identifiable_laws();
 
 // Measures one law on the mesh [m]. A law that cannot be measured (calibrated below its smallest
-// Poisson's ratio) gets a note instead. Throws Error(usage) for an unknown name.
+// Poisson's ratio) has a note instead. Throws Error(usage) for an unknown name.
 LawIdentity identify_law(const TetMesh& mesh, const AskedMaterial& asked, const std::string& law,
                          bool with_curve);
 

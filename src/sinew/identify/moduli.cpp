@@ -51,7 +51,7 @@ Model body_alone(const BodySpec& body, bool hold_surface) {
   return m;
 }
 
-// C from the mean strains that six uniform stresses make.
+// C from the mean strains under six uniform stresses.
 Mat6 by_tractions(const BodySpec& body, double tolerance) {
   const Model model = body_alone(body, false);
   Field area(model.rest_position.size(), Vec3::Zero());
@@ -80,7 +80,7 @@ Mat6 by_tractions(const BodySpec& body, double tolerance) {
   return compliance.inverse();
 }
 
-// C from the mean stresses that six affine displacements of the surface make.
+// C from the mean stresses under six affine displacements of the surface.
 Mat6 by_displacements(const BodySpec& body, double tolerance) {
   const Model held = body_alone(body, true);
   const Model free = body_alone(body, false);

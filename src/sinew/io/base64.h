@@ -17,10 +17,10 @@ class Base64Reader {
  public:
   explicit Base64Reader(std::string_view text) : text_(text) {}
 
-  // Appends exactly `count` bytes to `bytes`; false where the text ends before, or where it is
-  // not Base64 (`bad_at` then holds the place).
+  // Appends exactly `count` bytes to `bytes`; false if the text ends earlier or is not Base64
+  // (`bad_at` then holds the place).
   bool read(std::size_t count, std::string& bytes);
-  // No more than this many bytes can be left.
+  // Upper bound of the remaining bytes.
   std::size_t remaining() const;
   std::optional<std::size_t> bad_at() const { return bad_at_; }
 
@@ -30,7 +30,7 @@ class Base64Reader {
 
   std::string_view text_;
   std::size_t at_ = 0;
-  std::string pending_;  // bytes of the last group that were not asked for yet: 2 at most
+  std::string pending_;  // bytes of the last group that were not requested yet: at most 2
   std::optional<std::size_t> bad_at_;
 };
 

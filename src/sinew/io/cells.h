@@ -1,5 +1,5 @@
-// What the formats with many cell types share: which types Sinew uses, and one clear refusal of
-// those that it cannot.
+// Shared by the formats with many cell types: the types that Sinew uses, and the error for types
+// that it cannot use.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +15,7 @@ enum class CellUse {
   tet,
   face,    // a triangle, kept with its label
   skip,    // points, lines, quadrilaterals: not part of a tetrahedral mesh
-  refuse,  // a volume cell or curved cell that would leave a hole if it was skipped
+  refuse,  // a volume cell or curved cell that would leave a hole if it were skipped
 };
 
 struct CellType {
@@ -27,22 +27,22 @@ struct CellType {
 CellType gmsh_cell_type(int type);  // element types of the Gmsh manual, section "MSH file format"
 CellType vtk_cell_type(int type);   // vtkCellType.h
 
-// Counts the cells that must be refused, so that one error can name them all.
+// Counts the refused cells, so that one error names them all.
 class RefusedCells {
  public:
   void add(std::string_view name, std::size_t count = 1) { counts_[std::string(name)] += count; }
-  // Error where there are any.
+  // Error if there are any.
   void check(const std::string& file) const;
 
  private:
   std::map<std::string, std::size_t> counts_;
 };
 
-// Error where the mesh has no tetrahedra; it then says whether it has a surface.
+// Error if the mesh has no tetrahedra; the message says whether it has a surface.
 void require_tets(const TetMesh& mesh, const std::string& file);
-// Error where there are more than an Index can number.
+// Error if there are more than an Index can number.
 void require_indexable(std::size_t count, std::string_view what, const std::string& file);
-// Labels that are all 0 are no labels.
+// Removes labels if all of them are 0.
 void drop_zero_labels(std::vector<int>& labels);
 
 }  // namespace sinew::io

@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "sinew/base/error.h"
+#include "sinew/base/text.h"
 
 namespace sinew::io {
 namespace fs = std::filesystem;
@@ -81,6 +82,10 @@ void write_file(const fs::path& path, std::string_view bytes) {
     fs::remove(temporary, ignored);
     fail_write(path, reason(failure));
   }
+}
+
+std::string lower_extension(const fs::path& path) {
+  return lower_case(path.extension().string());
 }
 
 }  // namespace sinew::io

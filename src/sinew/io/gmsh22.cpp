@@ -58,7 +58,7 @@ void read_elements(GmshFile& file) {
   file.values.check_room(static_cast<std::uint64_t>(count), 4, 8, wanted);
   std::int64_t done = 0;
   while (done < count) {
-    // Text: each element says its own type. Binary: a header says it for a group.
+    // Text: each element has its own type. Binary: a header has the type of a group.
     const std::int64_t number = done + 1;
     std::int64_t id = number;
     if (!file.values.binary()) id = text.integer({"id", "element", number});

@@ -9,7 +9,7 @@
 namespace sinew::io {
 namespace {
 
-// What is left of a declared total when a block takes `count` of it.
+// The rest of a declared total after a block of `count`.
 std::int64_t take_from_total(GmshFile& file, std::int64_t left, std::int64_t count,
                              std::string_view what) {
   if (count <= left) return left - count;
@@ -60,7 +60,7 @@ void Gmsh41Sections::entities(GmshFile& file) {
       const std::int64_t groups = file.size({"the number of physical tags", kind, tag});
       for (std::int64_t k = 0; k < groups; ++k) {
         const int physical = file.values.value<std::int32_t>({"a physical tag", kind, tag});
-        // A negative tag is the group of that number, with the entity turned around.
+        // A negative tag is the group of that number, with the entity reversed.
         constexpr int lowest = -std::numeric_limits<int>::max();
         if (k == 0) physical_[{d, tag}] = std::abs(std::max(physical, lowest));
       }

@@ -1,4 +1,4 @@
-// The parts that the two versions of the Gmsh format share. For gmsh*.cpp only.
+// Shared by the two versions of the Gmsh format. For gmsh*.cpp only.
 #pragma once
 
 #include <cstdint>
@@ -12,13 +12,13 @@
 
 namespace sinew::io {
 
-// From the node ids of a file, which may have gaps and any order, to indices.
+// Maps the node ids of a file, which may have gaps and any order, to indices.
 class NodeIds {
  public:
   void reserve(std::size_t count) { ids_.reserve(count); }
   void add(std::int64_t id) { ids_.push_back(id); }
   std::size_t size() const { return ids_.size(); }
-  // Call once when all are added. Returns the first id that stands twice, or -1.
+  // Call once when all are added. Returns the first duplicate id, or -1.
   std::int64_t finish();
   Index find(std::int64_t id) const;  // -1: no such node
   std::int64_t lowest() const;
@@ -26,10 +26,10 @@ class NodeIds {
 
  private:
   std::vector<std::int64_t> ids_;                       // in the file's order
-  std::vector<std::pair<std::int64_t, Index>> sorted_;  // empty where the ids have no gaps
+  std::vector<std::pair<std::int64_t, Index>> sorted_;  // empty if the ids have no gaps
 };
 
-// A .msh file after its header: its sections, its numbers, and the mesh as it grows.
+// A .msh file after its header: its sections, its numbers, and the mesh read so far.
 struct GmshFile {
   explicit GmshFile(TextReader& reader) : text(reader), values(reader) {}
 
@@ -44,8 +44,8 @@ struct GmshFile {
   std::int64_t size(const Wanted& wanted);  // a size_t
   void expect_end(std::string_view section);
   void start_nodes();     // Error at a second $Nodes
-  void finish_nodes();    // Error where two nodes have one id
-  void start_elements();  // Error where the nodes are still missing
+  void finish_nodes();    // Error if two nodes have one id
+  void start_elements();  // Error if the nodes are still missing
   CellType cell_type(int type, const Wanted& wanted);
   // Reads the nodes of one element and keeps it if it is a tet or a face.
   template <typename ReadId>
@@ -53,7 +53,7 @@ struct GmshFile {
   Index node(std::int64_t id, std::string_view kind, std::int64_t element);
 };
 
-// The sections $Nodes, $Elements (and $Entities) of each version; false: not one that it needs.
+// The sections $Nodes, $Elements (and $Entities) of each version; false for other sections.
 bool read_gmsh22_section(GmshFile& file, std::string_view section);
 
 class Gmsh41Sections {

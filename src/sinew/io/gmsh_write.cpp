@@ -34,7 +34,7 @@ class ValueWriter {
   void end_line() {
     if (!binary_) out_.back() = '\n';  // in place of the last blank
   }
-  // A count that stands alone on a line, as text in both forms of 2.2.
+  // A count on a line of its own, as text in both forms of 2.2.
   void text_line(std::size_t v) { fmt::format_to(std::back_inserter(out_), "{}\n", v); }
   void section(std::string_view name) { fmt::format_to(std::back_inserter(out_), "${}\n", name); }
   void end_section(std::string_view name) {
@@ -51,8 +51,8 @@ int label_of(const std::vector<int>& labels, std::size_t i) {
   return labels.empty() ? 0 : labels[i];
 }
 
-// Physical groups have positive tags. A label that is not positive is held by the tag of its
-// entity, which then is in no group; entities of groups count from 1.
+// Physical groups have positive tags. A label that is not positive becomes the tag of an entity
+// without group; entities of groups count from 1.
 std::vector<int> distinct_labels(const std::vector<int>& labels, std::size_t cells) {
   if (cells == 0) return {};
   std::vector<int> distinct = labels.empty() ? std::vector<int>{0} : labels;
@@ -143,7 +143,7 @@ void write_entities(ValueWriter& out, const TetMesh& mesh, const std::vector<int
   out.end_section("Entities");
 }
 
-// Where a run of cells with one label starts; the last entry is the end of all.
+// The start of each run of cells with one label; the last entry is the end of all.
 std::vector<std::size_t> label_runs(const std::vector<int>& labels, std::size_t cells) {
   std::vector<std::size_t> starts;
   for (std::size_t i = 0; i < cells; ++i) {

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "sinew/base/error.h"
+#include "sinew/base/text.h"
 #include "sinew/io/file_io.h"
 #include "sinew/io/image_parts.h"
 #include "sinew/io/value_reader.h"
@@ -45,14 +46,6 @@ double voxel(const char* at, VoxelType type, bool swap) {
   return from_bytes<double>(at, swap);
 }
 
-std::string lower_name(const fs::path& path) {
-  std::string name = path.filename().string();
-  for (char& c : name) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return name;
-}
-
 }  // namespace
 
 std::size_t bytes_of(VoxelType type) {
@@ -81,7 +74,7 @@ void ImageBytes::fail(std::string message, std::string remedy) const {
 
 std::string_view ImageBytes::first(std::size_t count) {
   if (!compressed_) return bytes_.substr(0, count);
-  // Deflate makes at most 1032 bytes of one: what cannot follow is not made room for.
+  // Deflate expands a byte to at most 1032: no room is allocated beyond that.
   expanded_.resize(std::min(count, 1032 * bytes_.size()));
   z_stream stream{};
   if (inflateInit2(&stream, 15 + 16) != Z_OK) throw std::bad_alloc();
@@ -98,7 +91,7 @@ std::string_view ImageBytes::first(std::size_t count) {
     code = inflate(&stream, Z_NO_FLUSH);
     in += in_now - stream.avail_in;
     out += out_now - stream.avail_out;
-    // Some programs write several compressed parts one after the other.
+    // Some programs write several compressed parts in sequence.
     if (code == Z_STREAM_END && in < bytes_.size() && bytes_[in] == '\x1f') {
       code = inflateReset(&stream);
     }
@@ -137,7 +130,7 @@ void read_voxels(ImageBytes& bytes, const VoxelLayout& layout, LabelImage& image
   const std::string_view data = bytes.all(layout.offset + count * width).substr(layout.offset);
 
   // Runs of equal voxels are long: the map is asked only where the value changes.
-  std::map<int, std::uint8_t> number;  // in the order of the first voxel, put in order below
+  std::map<int, std::uint8_t> number;  // in the order of the first voxel, sorted below
   image.voxels.resize(count);
   double last = std::numeric_limits<double>::quiet_NaN();
   std::uint8_t last_number = 0;
@@ -199,13 +192,13 @@ void check_axes(const ImageBytes& bytes, const LabelImage& image) {
 }
 
 bool is_image_name(const fs::path& path) {
-  const std::string name = lower_name(path);
+  const std::string name = lower_case(path.filename().string());
   return name.ends_with(".inr") || name.ends_with(".inr.gz") || name.ends_with(".nii") ||
          name.ends_with(".nii.gz");
 }
 
 LabelImage read_image(const fs::path& path) {
-  const std::string name = lower_name(path);
+  const std::string name = lower_case(path.filename().string());
   if (name.ends_with(".inr") || name.ends_with(".inr.gz")) {
     return parse_inr(read_file(path), path.string());
   }

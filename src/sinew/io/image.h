@@ -1,4 +1,4 @@
-// Labelled images: which voxel belongs to which organ. INR (INRIMAGE-4) and NIfTI-1, also as .gz.
+// Labelled images: the organ of each voxel. INR (INRIMAGE-4) and NIfTI-1, also as .gz.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace sinew::io {
 
-// Most labels an image may have: what has more is a scan that nobody has segmented.
+// Maximum number of labels of an image; an image with more is an unsegmented scan.
 constexpr std::size_t kMostLabels = 255;
 
 struct LabelImage {
@@ -28,15 +28,15 @@ struct LabelImage {
   }
 };
 
-// The bytes of a file, compressed by gzip or not; `file` names it in errors. Error (input): not
-// such a file, cut short, voxels that are no labels, axes that are not at right angles.
+// The bytes of a file, compressed by gzip or not; `file` names it in errors. Error (input): another
+// format, a truncated file, voxels that are not labels, axes that are not orthogonal.
 LabelImage parse_inr(std::string_view bytes, const std::string& file);
 LabelImage parse_nifti(std::string_view bytes, const std::string& file);
 
-// The format by the ending, case ignored: .inr .inr.gz .nii .nii.gz.
+// The format follows from the extension, case ignored: .inr .inr.gz .nii .nii.gz.
 LabelImage read_image(const std::filesystem::path& path);
 
-// Whether the name ends like an image.
+// Whether the name has the extension of an image.
 bool is_image_name(const std::filesystem::path& path);
 
 }  // namespace sinew::io

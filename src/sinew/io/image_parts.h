@@ -1,4 +1,4 @@
-// What the readers of images share. For inr.cpp, nifti.cpp and image.cpp only.
+// Shared by the readers of images. For inr.cpp, nifti.cpp and image.cpp only.
 #pragma once
 
 #include <cstdint>
@@ -13,14 +13,14 @@ enum class VoxelType { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
 
 std::size_t bytes_of(VoxelType type);
 
-// A file's bytes, which gzip may have compressed: no more is expanded than is asked for.
+// A file's bytes, perhaps compressed by gzip. Only the requested part is expanded.
 class ImageBytes {
  public:
   ImageBytes(std::string_view bytes, std::string file);
 
-  // The first `count` bytes, fewer where the file ends before. The view holds until the next call.
+  // The first `count` bytes, fewer if the file is shorter. The view is valid until the next call.
   std::string_view first(std::size_t count);
-  // As many as `count`, or an Error that says how many there are.
+  // The first `count` bytes, or an Error with the actual number.
   std::string_view all(std::size_t count);
 
   const std::string& file() const { return file_; }
@@ -33,7 +33,7 @@ class ImageBytes {
   std::string expanded_;
 };
 
-// Where the voxels of an image stand in its bytes, and what they mean.
+// Position and meaning of the voxels in the bytes of an image.
 struct VoxelLayout {
   std::array<std::int64_t, 3> size{};
   std::size_t offset = 0;  // of the first voxel [bytes]
@@ -43,9 +43,9 @@ struct VoxelLayout {
   double intercept = 0;
 };
 
-// Checks the size, reads the voxels and numbers the labels; axes and origin are left as they are.
+// Checks the size, reads the voxels and numbers the labels; does not change axes and origin.
 void read_voxels(ImageBytes& bytes, const VoxelLayout& layout, LabelImage& image);
-// Error where a step is 0, not finite, or not at right angles to another.
+// Error if a step is 0, not finite, or not orthogonal to another.
 void check_axes(const ImageBytes& bytes, const LabelImage& image);
 
 }  // namespace sinew::io

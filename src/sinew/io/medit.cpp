@@ -14,8 +14,8 @@
 namespace sinew::io {
 namespace {
 
-// A section that is counted and skipped: so many values an entry. refused: plural name of cells
-// that may not be there.
+// A section that is counted and skipped: the values of an entry. refused: plural name of cells that
+// are not allowed.
 struct Skipped {
   std::string_view keyword;
   std::size_t values;
@@ -56,8 +56,8 @@ std::vector<std::string_view> all_keywords() {
   return keywords;
 }
 
-// One parse. Triangles and tetrahedra that stand before the vertices are passed over first and
-// read when the number of vertices is known, so that a bad id is reported at its own line.
+// One parse. Triangles and tetrahedra before the vertices are skipped first and read when the
+// number of vertices is known, so that a bad id is reported at its own line.
 class MeditParser {
  public:
   MeditParser(std::string_view text, const std::string& name) : reader_(text, name, '#') {}
@@ -84,7 +84,7 @@ class MeditParser {
     reader.set_part("a line of Tetrahedra", "vertex vertex vertex vertex label");
     cells(reader, "tetrahedron", count, mesh_.tets, mesh_.tet_label);
   }
-  // Reads the section now, or keeps its place and passes over it.
+  // Reads the section now, or stores its place and skips it.
   void now_or_later(std::optional<TextReader>& later, void (MeditParser::*read)(TextReader&),
                     std::size_t values, std::string_view what);
 

@@ -1,5 +1,5 @@
 // MEDIT .mesh, ASCII (P. Frey, "MEDIT: an interactive mesh visualization software", INRIA RT-0253,
-// 2001): MeshVersionFormatted 1 to 4 (as text they differ in nothing), Dimension 3, sections in
+// 2001): MeshVersionFormatted 1 to 4 (identical as text), Dimension 3, sections in
 // any order, ids from 1, comments from # to the end of the line, End optional.
 // Vertices, Triangles and Tetrahedra are kept with their reference numbers as labels; other known
 // sections are skipped by their count.
@@ -12,7 +12,7 @@
 
 namespace sinew::io {
 
-// name: for errors. Error (input) for everything that is not such a file, or holds no tetrahedra.
+// name: for errors. Error (input) for any other file and for a mesh without tetrahedra.
 TetMesh parse_medit(std::string_view text, const std::string& name);
 std::string format_medit(const TetMesh& mesh);
 

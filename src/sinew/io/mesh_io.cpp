@@ -15,14 +15,6 @@ namespace sinew::io {
 namespace fs = std::filesystem;
 namespace {
 
-std::string lower_ending(const fs::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return ending;
-}
-
 [[noreturn]] void fail_ending(const fs::path& path, const std::string& ending) {
   std::string remedy = fmt::format("known endings: {}", fmt::join(mesh_endings(), " "));
   if (ending == ".meshb") {
@@ -107,8 +99,13 @@ const std::vector<std::string>& mesh_endings() {
   return endings;
 }
 
+bool is_mesh_name(const fs::path& path) {
+  const std::vector<std::string>& endings = mesh_endings();
+  return std::find(endings.begin(), endings.end(), lower_extension(path)) != endings.end();
+}
+
 TetMesh read_mesh(const fs::path& path) {
-  const std::string ending = lower_ending(path);
+  const std::string ending = lower_extension(path);
   const std::string name = path.string();
   if (ending == ".mesh") return parse_medit(read_file(path), name);
   if (ending == ".msh") return parse_gmsh(read_file(path), name);
@@ -125,7 +122,7 @@ TetMesh read_mesh(const fs::path& path) {
 }
 
 void write_mesh(const fs::path& path, const TetMesh& mesh, const WriteOptions& options) {
-  const std::string ending = lower_ending(path);
+  const std::string ending = lower_extension(path);
   if (ending == ".mesh") {
     write_file(path, format_medit(mesh));
   } else if (ending == ".msh") {

@@ -1,4 +1,4 @@
-// A mesh from a file and into a file, the format chosen by the ending of its name.
+// Reads and writes a mesh; the extension of the file's name gives the format.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,10 @@
 namespace sinew::io {
 
 // .mesh .msh .node .ele .vtk .vtu, case ignored. TetGen's pair may be named by either file or by
-// its stem; its .face is read if it is there.
-// Indices are in range afterwards; geometry is not looked at (mesh/doctor.h does that).
-// Error (input) names the file, the line, what is wrong and the remedy; Error (io) what the system
-// refused.
+// its stem; its .face is read if it exists.
+// Indices are in range afterwards; the geometry is not checked (mesh/doctor.h does that).
+// Error (input) names the file, the line, the fault and the remedy; Error (io) the refusal of the
+// system.
 TetMesh read_mesh(const std::filesystem::path& path);
 
 struct WriteOptions {
@@ -24,14 +24,17 @@ struct WriteOptions {
   VtuEncoding vtu = VtuEncoding::zlib;
 };
 
-// The same endings. Positions come back bit by bit, and so do the labels that the format can hold:
-// all of tets and faces; of nodes in all but Gmsh. No part of a file is ever left (file_io.h).
-// TetGen: NAME.node, NAME.ele, and NAME.face where there are faces; an old NAME.face that does not
-// belong to them is removed.
+// The same extensions. A round trip keeps the bits of positions, and the labels that the format can
+// hold: those of tets and faces in all formats, those of nodes in all but Gmsh. Files are complete
+// or absent (file_io.h). TetGen: NAME.node, NAME.ele, and NAME.face if there are faces; an old
+// NAME.face is removed otherwise.
 void write_mesh(const std::filesystem::path& path, const TetMesh& mesh,
                 const WriteOptions& options = {});
 
-// The endings that can be read and written, for messages: {".mesh", ...}.
+// The extensions that can be read and written, for messages: {".mesh", ...}.
 const std::vector<std::string>& mesh_endings();
+
+// Whether the name has one of these extensions, case ignored.
+bool is_mesh_name(const std::filesystem::path& path);
 
 }  // namespace sinew::io

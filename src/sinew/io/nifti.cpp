@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t nifti_header_bytes = 348;
 
-// Fields of the header by their place in it.
+// Fields of the header by their offset.
 class Header {
  public:
   Header(std::string_view bytes, bool swap) : bytes_(bytes), swap_(swap) {}
@@ -58,8 +58,8 @@ VoxelType voxel_type(const Header& header, const ImageBytes& bytes) {
   }
 }
 
-// Where voxels lie in the scanner: by the matrix (method 3), else by the quaternion (method 2),
-// else by the distances alone (method 1).
+// Position of voxels in the scanner: by the matrix (method 3), otherwise by the quaternion (method
+// 2), otherwise by the distances alone (method 1).
 void place(const Header& header, LabelImage& image) {
   const Vec3 spacing = Vec3(header.real(80), header.real(84), header.real(88)).cwiseAbs();
   if (header.at<std::int16_t>(254) > 0) {

@@ -1,6 +1,6 @@
 // OBJ (Wavefront): lines "v x y z" and "f a b c ...", where a corner is an id from 1, or from the
 // last vertex backwards if negative, perhaps with texture and normal: 7/1/3. All other lines are
-// passed over; a backslash at the end of a line joins it with the next.
+// skipped; a backslash at the end of a line joins it with the next.
 #include <fmt/format.h>
 
 #include <charconv>
@@ -20,7 +20,7 @@ void corner(TextReader& reader, std::int64_t vertices, std::int64_t face, Polygo
   if (code != std::errc{} || !ends || id == 0) {
     reader.fail_expected(wanted, "an id from 1, as in 7 or 7/1/3", word);
   }
-  // An id that is out of range is told of at the end, when all vertices are known.
+  // An id out of range is reported at the end, when all vertices are known.
   polygons.add(id > 0 ? id - 1 : (-id <= vertices ? vertices + id : vertices));
 }
 

@@ -1,6 +1,6 @@
 // OFF (Geomview): [ST][C][N]OFF, the numbers of vertices, faces and edges, a line for each vertex
-// and each face; # starts a comment. What follows the position of a vertex (normals, colours) and
-// the corners of a face (colours) is passed over.
+// and each face; # starts a comment. Further values of a vertex (normals, colours) and of a
+// face (colours) are skipped.
 #include <fmt/format.h>
 
 #include "sinew/io/surface_file.h"

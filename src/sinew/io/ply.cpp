@@ -1,6 +1,6 @@
 // PLY (G. Turk, "The PLY polygon file format", 1994), version 1.0 as text or bytes of either order.
 // Elements vertex (x, y, z) and face (the list vertex_indices or vertex_index) are read, all others
-// and all other properties are passed over.
+// and all other properties are skipped.
 #include <fmt/format.h>
 
 #include <bit>
@@ -209,7 +209,7 @@ class PlyParser {
         for (std::uint64_t k = 0; k < corners; ++k) {
           const Wanted wanted{"a vertex", "face", static_cast<std::int64_t>(i + 1)};
           const double id = number(p.type, wanted);
-          // What is no id at all is told of with the others that are out of range.
+          // A value that is not an id is reported with the ids out of range.
           polygons_.add(id >= -1e9 && id <= 4.3e9 ? static_cast<std::int64_t>(id) : -1);
         }
       }

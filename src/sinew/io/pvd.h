@@ -13,7 +13,7 @@ struct PvdEntry {
 };
 
 std::string format_pvd(std::span<const PvdEntry> entries);
-// As a whole or not at all (file_io.h), so that it may be written anew after every frame.
+// Complete or absent (file_io.h), so it may be rewritten after every frame.
 void write_pvd(const std::filesystem::path& path, std::span<const PvdEntry> entries);
 
 }  // namespace sinew::io

@@ -1,5 +1,5 @@
 // STL, text ("solid NAME", "facet", "vertex x y z") and binary (80 bytes, the number of triangles,
-// 50 bytes each). Every triangle brings its own corners; corners at the same place become one node.
+// 50 bytes each). Every triangle has its own corners; corners at the same position become one node.
 #include <fmt/format.h>
 
 #include <array>
@@ -17,7 +17,7 @@ namespace {
 constexpr std::size_t stl_header_bytes = 84;
 constexpr std::size_t triangle_bytes = 50;
 
-// Nodes by the bits of their position, -0 taken for 0.
+// Nodes by the bits of their position; -0 counts as 0.
 class Corners {
  public:
   std::int64_t id(const Vec3& x) {
@@ -102,7 +102,7 @@ SurfaceSoup parse_text(std::string_view text, const std::string& file) {
 }  // namespace
 
 SurfaceSoup parse_stl(std::string_view bytes, const std::string& file) {
-  // Some binary files begin with "solid" too; their length gives them away, or bytes that no text
+  // Some binary files begin with "solid" too; their length identifies them, or bytes that no text
   // has.
   const bool exact = bytes.size() >= stl_header_bytes &&
                      bytes.size() == stl_header_bytes + triangle_bytes * promised_triangles(bytes);

@@ -46,9 +46,9 @@ bool is_ear(const std::vector<Index>& left, std::size_t at, const Vec3& normal,
   return true;
 }
 
-// Cuts ears off (G. Meisters, "Polygons have ears", 1975). Where a polygon has none, being warped
-// or crossing itself, any corner does: the checks that follow see what comes of it. Above this size
-// the search would take too long, and the polygon is taken for convex.
+// Ear clipping (G. Meisters, "Polygons have ears", 1975). If a polygon has no ear, because it is
+// warped or crosses itself, any corner is cut; later checks examine the result. Above this size the
+// search would take too long, and the polygon is treated as convex.
 constexpr std::size_t most_searched = 128;
 
 void split(std::span<const Index> polygon, const std::vector<Vec3>& x,
@@ -128,11 +128,13 @@ const std::vector<std::string>& surface_endings() {
   return endings;
 }
 
+bool is_surface_name(const fs::path& path) {
+  const std::vector<std::string>& endings = surface_endings();
+  return std::find(endings.begin(), endings.end(), lower_extension(path)) != endings.end();
+}
+
 SurfaceSoup read_surface(const fs::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string ending = lower_extension(path);
   const std::string file = path.string();
   if (ending == ".off") return parse_off(read_file(path), file);
   if (ending == ".obj") return parse_obj(read_file(path), file);

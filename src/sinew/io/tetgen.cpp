@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::int64_t most_attributes = 1000;
 
-// One of the files. Its records are lines: the count of values on each is checked, because a
-// header that promises one column too many or too few would otherwise shift every number.
+// One of the files. Its records are lines. The number of values on each line is checked, because a
+// header with a wrong number of columns would otherwise shift every number.
 class LineFile {
  public:
   LineFile(std::string_view text, const std::string& name, std::string_view kind)
@@ -62,7 +62,7 @@ class LineFile {
  private:
   void check_line(std::string_view value) {
     if (!reader_.at_line_end() || reader_.at_end()) return;
-    // Not the end of the file, only of the line; point at what follows.
+    // The end of the line, not of the file: point at the next value.
     const std::string_view next = reader_.word(wanted(value));
     reader_.fail(fmt::format("the line of {} {} ends before {}; the next line starts with {}",
                              kind_, number_, value, quoted(next)),
@@ -80,7 +80,7 @@ std::int64_t optional_count(LineFile& file, std::string_view value, std::int64_t
   return file.reader().integer({value}, 0, most);
 }
 
-// The last attribute, a whole number though TetGen writes it as a double.
+// The last attribute, a whole number that TetGen writes as a double.
 int region(LineFile& file, std::string_view value) {
   const double found = file.real(value);
   if (found == std::floor(found) && found >= std::numeric_limits<int>::min() &&
@@ -180,7 +180,7 @@ void read_tets(const TetgenText& files, std::int64_t base, TetMesh& mesh) {
   }
 }
 
-// First line: count, markers. What follows the marker (TetGen -nn: the neighbours) is not needed.
+// First line: count, markers. Values after the marker (TetGen -nn: the neighbours) are not needed.
 void read_faces(const TetgenText& files, std::int64_t base, TetMesh& mesh) {
   LineFile file(files.face, files.face_name, "face");
   TextReader& reader = file.reader();

@@ -11,15 +11,15 @@
 
 namespace sinew::io {
 
-// The texts of the files that belong together; an empty face text: no such file. Names: for errors.
+// The texts of a set of files; an empty face text: no such file. Names: for errors.
 struct TetgenText {
   std::string node, ele, face;
   std::string node_name, ele_name, face_name;
 };
 
-// Error (input) for everything that is not such a pair, or holds no tetrahedra.
+// Error (input) for any other pair and for a mesh without tetrahedra.
 TetMesh parse_tetgen(const TetgenText& files);
-// Ids from 1. `face` is empty where the mesh has no faces.
+// Ids from 1. `face` is empty if the mesh has no faces.
 TetgenText format_tetgen(const TetMesh& mesh);
 
 }  // namespace sinew::io

@@ -106,7 +106,7 @@ double TextReader::real(const Wanted& wanted) {
     fail_expected(wanted, "a number", rest_of_word());
   }
   if (code == std::errc::result_out_of_range) {
-    // Too small is zero; too large is a mistake.
+    // A number that is too small becomes zero; one that is too large is an error.
     const std::string_view found = rest_of_word();
     if (found.find("e-") == found.npos && found.find("E-") == found.npos) {
       fail(fmt::format("{} is {}, larger than a double can hold (1.8e308)", to_text(wanted),

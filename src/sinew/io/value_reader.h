@@ -1,5 +1,5 @@
-// Numbers of a file that comes as text or as raw bytes, read through one interface: the parsers of
-// Gmsh and legacy VTK are written once for both.
+// Numbers of a file in text or binary form, read through one interface, so that the parsers of Gmsh
+// and legacy VTK are written once.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +36,7 @@ class ValueReader {
  public:
   explicit ValueReader(TextReader& text) : text_(text) {}
 
-  // From here on numbers are raw bytes; swap: in the opposite byte order of this machine.
+  // The following numbers are raw bytes; swap: in the opposite byte order of this machine.
   void set_binary(bool swap) {
     text_.set_binary();
     swap_ = swap;
@@ -58,7 +58,7 @@ class ValueReader {
     }
   }
 
-  // Error unless `count` records, each of so many values and bytes, can follow.
+  // Error unless `count` records of this many values and bytes can follow.
   void check_room(std::uint64_t count, std::uint64_t values_each, std::uint64_t bytes_each,
                   const Wanted& wanted) const;
 

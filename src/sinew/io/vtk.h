@@ -12,9 +12,9 @@
 
 namespace sinew::io {
 
-// name: for errors. Error (input) for everything that is not such a file, or holds no tetrahedra.
+// name: for errors. Error (input) for any other file and for a mesh without tetrahedra.
 TetMesh parse_vtk(std::string_view bytes, const std::string& name);
-// Version 3.0, which every reader knows; cell array "region" (tets, then faces), point array
+// Version 3.0, which every reader supports; cell array "region" (tets, then faces), point array
 // "label".
 std::string format_vtk(const TetMesh& mesh, bool binary);
 

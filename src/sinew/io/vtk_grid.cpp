@@ -9,12 +9,13 @@
 #include <utility>
 
 #include "sinew/base/error.h"
+#include "sinew/base/text.h"
 #include "sinew/io/cells.h"
 
 namespace sinew::io {
 namespace {
 
-// Who writes them: Sinew; many tools; meshio (medit:ref, gmsh:physical, tetgen:ref, cell_tags);
+// Written by Sinew; many tools; meshio (medit:ref, gmsh:physical, tetgen:ref, cell_tags);
 // VTK's Gmsh and Exodus readers; SimVascular and VMTK (ModelRegionID, CellEntityIds); Gmsh itself.
 constexpr std::array<std::string_view, 18> names = {
     "region",        "regions",    "label",           "labels",        "regionid",
@@ -23,11 +24,7 @@ constexpr std::array<std::string_view, 18> names = {
     "ref",           "marker",     "gmsh:geometrical"};
 
 int rank_of(std::string_view name) {
-  std::string lower(name);
-  for (char& c : lower) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  const auto place = std::find(names.begin(), names.end(), lower);
+  const auto place = std::find(names.begin(), names.end(), lower_case(name));
   return place == names.end() ? -1 : static_cast<int>(place - names.begin());
 }
 

@@ -1,5 +1,5 @@
-// What legacy VTK and VTU share: an unstructured grid as VTK stores it, which of its arrays are
-// labels, and the way to a TetMesh. For vtk.cpp and vtu_read.cpp only.
+// Shared by legacy VTK and VTU: an unstructured grid in VTK's form, the choice of its label arrays,
+// and the conversion to a TetMesh. For vtk_read.cpp and vtu_read.cpp only.
 #pragma once
 
 #include <cstdint>
@@ -11,13 +11,13 @@
 
 namespace sinew::io {
 
-// The best label array met so far, of the cells or of the points.
+// The best label array found so far, of the cells or of the points.
 struct LabelArray {
   std::string name;
-  int rank = -1;               // place in the list of names; lower is better; -1: none yet
-  std::vector<double> values;  // whole numbers, checked when the mesh is made
+  int rank = -1;               // index in the list of names; lower is better; -1: none yet
+  std::vector<double> values;  // whole numbers, checked when the mesh is built
 
-  // Whether an array of this name (case ignored) is a label, and a better one than what is here.
+  // Whether an array of this name (case ignored) is a label, and better than the present one.
   bool wants(std::string_view array_name) const;
   void set(std::string_view array_name, std::vector<double> array_values);
 };
@@ -31,14 +31,14 @@ struct VtkGrid {
   LabelArray point_label;
 };
 
-// Error (input) where the arrays do not fit each other or a cell cannot be used.
+// Error (input) if the arrays do not match each other or a cell cannot be used.
 TetMesh mesh_from_grid(VtkGrid grid, const std::string& name);
 
-// The arrays that Sinew itself writes.
+// Names of the arrays that Sinew writes.
 inline constexpr std::string_view cell_label_name = "region";
 inline constexpr std::string_view point_label_name = "label";
 
-// The labels of tets, then faces, as one cell array; empty where neither has any.
+// The labels of tets, then faces, as one cell array; empty if neither has any.
 std::vector<int> joined_cell_labels(const TetMesh& mesh);
 
 }  // namespace sinew::io

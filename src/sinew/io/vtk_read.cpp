@@ -54,7 +54,7 @@ class VtkParser {
   void field();
   void metadata();
 
-  // tuples x components numbers; kept where the array is a label.
+  // tuples x components numbers; stored if the array is a label.
   void array(std::string_view name, std::size_t components, std::size_t tuples, Scalar type);
   std::int64_t point_id(Scalar type, std::size_t cell);
 
@@ -327,7 +327,7 @@ void VtkParser::scalars() {
   if (!text_.at_line_end()) {
     components = static_cast<std::size_t>(text_.integer({"the number of components"}, 1, 1000));
   }
-  // The line "LOOKUP_TABLE name" may be left out.
+  // The line "LOOKUP_TABLE name" is optional.
   if (same_word(text_.peek(), "LOOKUP_TABLE")) {
     text_.word({"LOOKUP_TABLE"});
     text_.word({"the name of the lookup table"});

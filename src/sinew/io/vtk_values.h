@@ -11,7 +11,7 @@ namespace sinew::io {
 // A VTK number type. long is 8 bytes, as on the 64-bit systems that write it.
 enum class Scalar { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64, bit };
 
-// Whether a is this word of upper-case letters; VTK ignores the case of its keywords.
+// Whether `a` equals this upper-case word; VTK ignores the case of its keywords.
 bool same_word(std::string_view a, std::string_view upper);
 
 class VtkValues {
@@ -24,9 +24,9 @@ class VtkValues {
   std::size_t count(const Wanted& wanted);
   Scalar scalar(const Wanted& wanted);
 
-  // The data of an array start on the next line.
+  // The data of an array starts on the next line.
   void start_data(const Wanted& wanted);
-  // Error unless records of so many numbers of this type can follow.
+  // Error unless records of this many numbers of this type can follow.
   void check_room(std::size_t records, std::size_t numbers_each, Scalar type,
                   const Wanted& wanted) const;
   double number(Scalar type, const Wanted& wanted);

@@ -6,28 +6,20 @@
 // Written: one Piece, tets first, then faces. ParaView and meshio read it.
 #pragma once
 
-#include <array>
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "sinew/base/words.h"
 #include "sinew/mesh/tet_mesh.h"
 
 namespace sinew::io {
 
-// name: for errors. Error (input) for everything that is not such a file, or holds no tetrahedra.
+// name: for errors. Error (input) for any other file and for a mesh without tetrahedra.
 TetMesh parse_vtu(std::string_view bytes, const std::string& name);
 
 enum class VtuEncoding { ascii, base64, zlib };  // zlib: compressed, then Base64
-constexpr std::array<Word<VtuEncoding>, 3> words_of(VtuEncoding) {
-  return {{{VtuEncoding::zlib, "zlib"},
-           {VtuEncoding::base64, "base64"},
-           {VtuEncoding::ascii, "ascii"}}};
-}
 
 template <typename T>
 struct VtuArray {
@@ -35,7 +27,7 @@ struct VtuArray {
   std::span<const T> values;  // (points) or (cells); must live until the file is written
 };
 
-// What goes into one file. Nothing is copied: the spans must live until it is written.
+// The content of one file. Nothing is copied: the spans must live until it is written.
 struct VtuData {
   std::span<const Vec3> points;     // positions (points)
   std::span<const Tet> tets;        // point ids (tets)
@@ -46,25 +38,22 @@ struct VtuData {
   std::vector<VtuArray<double>> cell_scalars;  // cells: the tets, then the faces
   std::vector<VtuArray<int>> cell_integers;
   std::optional<double> time;  // [s]; written as the field array TimeValue
-  // What format_vtu_cells gave for the same tets, faces and encoding, or empty. The cells of a time
-  // series stay the same, and they are most of the work of a compressed frame.
+  // The result of format_vtu_cells for the same tets, faces and encoding, or empty. The cells of a
+  // time series do not change, and are most of the work of a compressed frame.
   std::string_view encoded_cells;
 };
 
 struct VtuOptions {
   VtuEncoding encoding = VtuEncoding::zlib;
-  // Positions and real arrays as Float64, for a mesh that must come back bit by bit; a frame to
-  // look at is half the size as Float32.
+  // Positions and real arrays as Float64, for a mesh whose round trip must keep all bits. Float32
+  // halves the size of a frame for display.
   bool float64 = false;
 };
 
-// Error (internal) where an array's size is not that of the points or cells.
+// Error (internal) if an array's size is not that of the points or cells.
 std::string format_vtu(const VtuData& data, const VtuOptions& options = {});
 std::string format_vtu_cells(std::span<const Tet> tets, std::span<const Triangle> faces,
                              VtuEncoding encoding);
-// As a whole or not at all (file_io.h). Error (io) where the system refuses.
-void write_vtu(const std::filesystem::path& path, const VtuData& data,
-               const VtuOptions& options = {});
 
 // A mesh with its labels as cell array "region" and point array "label", positions in Float64.
 std::string format_vtu(const TetMesh& mesh, VtuEncoding encoding);

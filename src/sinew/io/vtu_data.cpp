@@ -13,7 +13,7 @@
 namespace sinew::io {
 namespace {
 
-// What zlib can expand a byte to at most (its manual: 1032), with some room for small blocks.
+// Maximum expansion of a byte by zlib (its manual: 1032), with a margin for small blocks.
 constexpr std::size_t most_expansion = 1040;
 constexpr std::size_t expansion_room = 64;
 

@@ -1,4 +1,4 @@
-// The data of a VTU file's arrays, whatever form they take. For vtu_read.cpp only.
+// Decodes the arrays of a VTU file, in any of their forms. For vtu_read.cpp only.
 #pragma once
 
 #include <cstddef>
@@ -8,16 +8,16 @@
 
 namespace sinew::io {
 
-// How a file stores its binary arrays; from the attributes of VTKFile.
+// The storage form of a file's binary arrays, from the attributes of VTKFile.
 struct VtuForm {
   bool swap = false;             // the opposite byte order of this machine
   std::size_t header_bytes = 4;  // of the numbers before an array: UInt32 or UInt64
   bool zlib = false;
 };
 
-// Decodes one array, plain or compressed: `text` is Base64 (is_raw: bytes) that starts with the
-// array's header; what stands behind the array is ignored. On failure returns false and sets
-// `problem` to what is wrong. `most`: more bytes than this are refused before they are decoded.
+// Decodes one array, plain or compressed. `text` is Base64 (is_raw: bytes) that starts with the
+// array's header; text after the array is ignored. On failure returns false and sets `problem` to
+// the fault. More bytes than `most` are refused before they are decoded.
 bool decode_vtu_array(std::string_view text, bool is_raw, const VtuForm& form, std::size_t most,
                       std::string& bytes, std::string& problem);
 

@@ -19,8 +19,8 @@ namespace {
 
 constexpr std::string_view export_again =
     "export the file again (in ParaView: Save Data, type VTU, any data mode)";
-// Real meshes compress by less than a hundred. A small file that grows to gigabytes is refused
-// before it does.
+// Real meshes compress by a factor of less than a hundred. A small file that would expand to
+// gigabytes is refused before it is expanded.
 constexpr std::size_t trusted_expansion = 256;
 constexpr std::size_t always_trusted = std::size_t{64} << 20;
 constexpr auto any_size = std::numeric_limits<std::size_t>::max();
@@ -88,7 +88,7 @@ class VtuParser {
 
   std::string_view bytes_;
   const std::string& name_;
-  std::size_t trusted_;  // how many bytes the arrays may still decode to
+  std::size_t trusted_;  // remaining bytes that the arrays may decode to
   pugi::xml_document document_;
   std::string_view appended_;  // the appended data behind their underscore
   bool appended_raw_ = false;
@@ -104,7 +104,7 @@ void VtuParser::fail(std::ptrdiff_t offset, std::string message, std::string rem
   place.fail(std::move(message), std::move(remedy));
 }
 
-// Appended data may be raw bytes, which are not XML: they are cut off before the rest is parsed.
+// Appended data may be raw bytes, which are not XML: they are removed before the rest is parsed.
 void VtuParser::load() {
   std::string head;
   const std::size_t tag = bytes_.find("<AppendedData");

@@ -8,7 +8,6 @@
 
 #include "sinew/base/error.h"
 #include "sinew/io/base64.h"
-#include "sinew/io/file_io.h"
 #include "sinew/io/value_reader.h"
 #include "sinew/io/vtk_grid.h"
 #include "sinew/io/vtu.h"
@@ -104,7 +103,7 @@ class VtuWriter {
   }
 
   // One DataArray of T. fill(put) calls put(value) for each number. tuples > 0: FieldData, which
-  // has to say how many.
+  // must state their number.
   template <typename T, typename Fill>
   void array(std::string_view name, int components, std::size_t tuples, Fill fill) {
     fmt::format_to(std::back_inserter(text_), "<DataArray type=\"{}\" Name=\"{}\"", vtk_type<T>,
@@ -230,10 +229,6 @@ std::string format_vtu_cells(std::span<const Tet> tets, std::span<const Triangle
   data.faces = faces;
   const VtuOptions options{encoding};
   return VtuWriter(data, options).write_cells();
-}
-
-void write_vtu(const std::filesystem::path& path, const VtuData& data, const VtuOptions& options) {
-  write_file(path, format_vtu(data, options));
 }
 
 std::string format_vtu(const TetMesh& mesh, VtuEncoding encoding) {

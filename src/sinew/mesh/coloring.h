@@ -1,5 +1,5 @@
-// Colours for pairs of nodes: pairs of one colour share no node, so they can be worked on at the
-// same time, and the result does not depend on the number of threads.
+// Colours for pairs of nodes. Pairs of one colour share no node, so they can be processed in
+// parallel, and the result does not depend on the number of threads.
 #pragma once
 
 #include <span>
@@ -22,7 +22,7 @@ struct Coloring {
 };
 
 // Greedy: each pair in turn takes the lowest colour that is free at both its nodes. At most
-// 2 * (largest number of pairs at a node) - 1 colours. Node ids have to lie in [0, node_count);
+// 2 * (largest number of pairs at a node) - 1 colours. Node ids must be in [0, node_count);
 // otherwise Error(internal).
 Coloring color_pairs(std::span<const Edge> pairs, Index node_count);
 

@@ -18,7 +18,7 @@ namespace {
 constexpr double kLargestCoordinate = 1e50;
 constexpr double kFlat = 1e-9;  // a regular tet has volume / edge^3 = 0.118
 
-// Counts finds and keeps the first few.
+// Counts occurrences and keeps the first few.
 struct Finds {
   std::int64_t count = 0;
   std::vector<std::vector<Index>> first;
@@ -64,7 +64,7 @@ class Doctor {
   void check_nodes();
   void check_components();
 
-  // One noun for one thing and another for several; `what` follows the ids.
+  // Singular and plural of a noun; `what` follows the ids.
   void report(ProblemKind kind, Severity severity, const Finds& finds, const char* one,
               const char* several, const char* what, const char* remedy) {
     if (finds.count == 0) return;
@@ -135,8 +135,8 @@ void Doctor::check_coordinates() {
          "a coordinate is nan, inf or beyond 1e50", "export the mesh again");
 }
 
-// Repeated nodes, duplicates, volumes. Leaves in sound_ the tets that have neither of the first
-// two.
+// Repeated nodes, duplicates, volumes. Afterwards sound_ holds the tets without the first two
+// faults.
 void Doctor::check_tets() {
   Finds repeated, duplicate, degenerate;
   std::vector<std::pair<Tet, Index>> keys;
@@ -200,7 +200,7 @@ void Doctor::check_tets() {
 }
 
 void Doctor::check_faces() {
-  std::vector<Tet> tets;  // as repair() would turn them
+  std::vector<Tet> tets;  // as repair() would orient them
   tets.reserve(sound_.size());
   for (const Index t : sound_) {
     tets.push_back(mesh_.tets[uz(t)]);
@@ -260,7 +260,7 @@ void Doctor::check_surface(const FaceTable& faces, std::span<const Tet> tets) {
   check_vertices(triangles);
 }
 
-// The surface triangles at a node form one fan, or the surface touches itself there.
+// If the surface triangles at a node do not form one fan, the surface touches itself there.
 void Doctor::check_vertices(std::span<const Triangle> triangles) {
   struct Spoke {  // the triangle at `node` that holds the edge to `other`
     Index node, other, triangle;

@@ -1,4 +1,4 @@
-// What is wrong with a mesh, and how much of it can be put right.
+// Diagnosis and repair of a mesh.
 //
 // Ids count from 0 in the order of the file, here and in every text, as ParaView shows them; files
 // such as MEDIT's count from 1.
@@ -13,20 +13,20 @@
 namespace sinew {
 
 enum class Severity {
-  warning,     // the mesh can be used; it may not be what was meant
-  repairable,  // repair() puts it right without touching the shape
+  warning,     // the mesh can be used, but is perhaps not as intended
+  repairable,  // repair() corrects it without a change of the shape
   fatal,       // the mesh cannot be simulated
 };
 
 enum class ProblemKind {
   empty,                // no nodes or no tets
-  bad_node_id,          // a tet or a labelled face names a node that is not there
+  bad_node_id,          // a tet or a labelled face names a missing node
   non_finite,           // a coordinate is nan, inf or beyond 1e50
   repeated_node,        // a tet names a node twice
   duplicate_tet,        // a tet has the four nodes of an earlier one
   degenerate,           // |volume| <= 1e-9 (longest edge)^3
   non_manifold_face,    // more than two tets share a face
-  inverted_all,         // more than half the tets are negative: the file's convention
+  inverted_all,         // more than half the tets are negative: the convention of the file
   inverted,             // tets whose orientation differs from most others'
   unreferenced_node,    // no tet names the node
   overlap,              // both tets of a face lie on the same side of it
@@ -45,11 +45,11 @@ struct Problem {
   ProblemKind kind;
   Severity severity;
   std::int64_t count;
-  // The first few: a node or tet as one id, a face or edge as its node ids. Of `components`, the
+  // The first few: a node or tet as one id, a face or edge as its node ids; for `components` the
   // first tet of each part.
   std::vector<std::vector<Index>> first;
   std::string text;    // "3 degenerate tets (0, 7, 12): no volume"
-  std::string remedy;  // what to do; empty where repair() does it
+  std::string remedy;  // what to do; empty if repair() does it
 };
 
 struct Diagnosis {
@@ -59,15 +59,15 @@ struct Diagnosis {
   const Problem* find(ProblemKind kind) const;  // nullptr if it was not found
 };
 
-// How many ids a problem lists.
+// Maximum number of ids that a problem lists.
 constexpr std::size_t kFirstIds = 5;
 
-// Never throws for a bad mesh; label arrays of the wrong length are Error(internal). Tets that name
-// missing or infinite nodes are left out of the checks that follow.
+// Does not throw for a faulty mesh; label arrays of the wrong length are Error(internal). Tets that
+// name missing or infinite nodes are excluded from the later checks.
 Diagnosis diagnose(const TetMesh& mesh);
 
-// Exchanges corners 2 and 3 (from 0) of every tet with a negative volume; returns how many. Node
-// ids have to be good.
+// Exchanges corners 2 and 3 (from 0) of every tet with a negative volume and returns their number.
+// Node ids must be valid.
 Index orient(TetMesh& mesh);
 
 struct RepairReport {
@@ -78,9 +78,9 @@ struct RepairReport {
   std::vector<Index> original_node;  // the node's id before the repair (nodes)
 };
 
-// Makes every tet positive and drops unreferenced nodes; labels and labelled faces follow. A fatal
-// problem is an Error(input) that names all fatal problems with counts and first ids, and the mesh
-// is left as it was. `file` goes into the error's location.
+// Makes every tet positive and removes unreferenced nodes; labels and labelled faces follow. A
+// fatal problem is an Error(input) that names all fatal problems with counts and first ids; the
+// mesh is then unchanged. `file` is the location of the error.
 RepairReport repair(TetMesh& mesh, const std::string& file = {});
 
 }  // namespace sinew

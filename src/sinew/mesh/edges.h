@@ -1,4 +1,4 @@
-// The edges of a tetrahedral mesh: where the springs go.
+// The edges of a tetrahedral mesh, along which the springs lie.
 #pragma once
 
 #include <span>
@@ -22,8 +22,8 @@ struct EdgeTable {
   }
 };
 
-// Node ids have to lie in [0, node_count); otherwise Error(internal). Two equal corners of a
-// degenerate tet make no edge. Time: linear in the tets.
+// Node ids must be in [0, node_count); otherwise Error(internal). Two equal corners of a degenerate
+// tet make no edge. Time: linear in the number of tets.
 EdgeTable build_edges(std::span<const Tet> tets, Index node_count);
 
 }  // namespace sinew

@@ -29,10 +29,11 @@ struct FaceTable {
   }
 };
 
-// Node ids have to lie in [0, node_count); otherwise Error(internal).
+// Node ids must be in [0, node_count); otherwise Error(internal).
 FaceTable build_faces(std::span<const Tet> tets, Index node_count);
 
-// The face as its tet sees it: outward when the tet's volume is positive, lowest node first.
+// The face with the orientation of its tet: outward if the tet's volume is positive; lowest node
+// first.
 Triangle outward_face(std::span<const Tet> tets, Index side);
 
 }  // namespace sinew

@@ -1,4 +1,4 @@
-// How well shaped the tets of a mesh are.
+// Shape measures of the tets of a mesh.
 #pragma once
 
 #include <array>

@@ -28,7 +28,7 @@ void require_count(const char* shape, const char* name, Index value) {
               fmt::format("give a positive whole number for {}", name));
 }
 
-// tets as a double: the products of user-given counts overflow every integer.
+// tets as a double: the product of the user's counts may overflow any integer.
 void require_tets(const char* shape, const char* name, double tets) {
   if (tets <= static_cast<double>(kMaxShapeTets)) return;
   throw Error(ErrorKind::input,
@@ -108,7 +108,7 @@ TetMesh beam(const Vec3& size, const std::array<Index, 3>& cells, double jitter)
   TetMesh mesh = grid_nodes({-size.x() / 2, -size.y() / 2, 0}, size, cells);
   mesh.tets.reserve(5 * uz(cells[0]) * uz(cells[1]) * uz(cells[2]));
   for_each_cell(cells, [&](Index i, Index j, Index l, const std::array<Index, 8>& corners) {
-    const int mirror = (i + j + l) % 2;  // neighbours mirrored in x, so that their diagonals meet
+    const int mirror = (i + j + l) % 2;  // neighbours mirrored in x, so that their diagonals match
     for (const auto& tet : kTets) {
       Tet nodes;
       for (std::size_t c = 0; c < 4; ++c) nodes[c] = corners[uz(tet[c] ^ mirror)];
@@ -271,9 +271,9 @@ UnitSphere unit_sphere(Index m) {
   return sphere;
 }
 
-// Three tets to every prism between layers of the same triangles, whose nodes mesh.nodes holds
-// layer by layer. A prism's sides are cut from the lower node in one layer to the higher node in
-// the other, so neighbours agree; layers alternate, so that the whole has no twist.
+// Three tets in every prism between layers of the same triangles; mesh.nodes holds their nodes
+// layer by layer. A prism's sides are divided from the lower node in one layer to the higher node
+// in the other, so neighbours match. Layers alternate, so the mesh has no twist.
 void fill_layers(TetMesh& mesh, std::vector<Triangle> triangles, Index layer_nodes, Index layers) {
   for (Triangle& t : triangles) std::sort(t.begin(), t.end());
   mesh.tets.reserve(3 * triangles.size() * uz(layers));

@@ -1,7 +1,7 @@
 // Built-in meshes for scenes without a file. All tets are positive and in region 0. Lengths are in
-// [m], from 1e-6 to 1e6; counts are 1 or more. Another value is an Error(input) that names the
-// argument, its value and its range; a mesh of more than kMaxShapeTets tets is refused before
-// anything is allocated.
+// [m], from 1e-6 to 1e6; counts are 1 or more. Any other value is an Error(input) that names the
+// argument, its value and its range. A mesh of more than kMaxShapeTets tets is refused before
+// allocation.
 #pragma once
 
 #include <array>

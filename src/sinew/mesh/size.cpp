@@ -30,7 +30,7 @@ std::optional<std::string> size_warning(double volume, const Vec3& extent, doubl
   const double longest = extent.maxCoeff();
   if (!std::isfinite(size) || !(longest > 0)) return std::nullopt;
   if (size > 10) {
-    // The unit that makes an organ of it: 3 cm to 3 m long.
+    // The unit with which the size is that of an organ: 3 cm to 3 m.
     const char* unit = "micrometres";
     double factor = 1e-6;
     if (longest < 30) {

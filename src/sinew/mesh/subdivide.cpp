@@ -10,8 +10,9 @@
 namespace sinew {
 namespace {
 
-// The octahedron of the middles is cut around one of three diagonals. For each: the diagonal's two
-// ends, then the ring of the other four middles; all by tet corners, a middle as a pair of corners.
+// The octahedron of the edge middles is divided around one of three diagonals. For each: the two
+// ends of the diagonal, then the ring of the other four middles; a middle is given as a pair of
+// corners.
 constexpr Edge kOctahedra[3][6] = {
     {{0, 1}, {2, 3}, {0, 2}, {0, 3}, {1, 3}, {1, 2}},
     {{0, 2}, {1, 3}, {0, 1}, {1, 2}, {2, 3}, {0, 3}},
@@ -25,7 +26,7 @@ class Middles {
 
   const std::vector<Edge>& edges() const { return table_.edges; }
 
-  // The node in the middle of an edge, or -1 where there is no such edge.
+  // The node in the middle of an edge, or -1 if there is no such edge.
   Index of(Index i, Index j) const {
     const Edge edge = {std::min(i, j), std::max(i, j)};
     const auto at = std::lower_bound(table_.edges.begin(), table_.edges.end(), edge);

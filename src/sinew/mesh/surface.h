@@ -1,4 +1,4 @@
-// The boundary of a tetrahedral mesh, and what hangs together.
+// The boundary of a tetrahedral mesh, and connected components.
 #pragma once
 
 #include <span>
@@ -15,7 +15,8 @@ struct Surface {
   std::vector<Index> tets;          // the tet behind each triangle (triangles)
 };
 
-// Outward relies on positive tets (see doctor.h). Node ids have to lie in [0, node_count).
+// The outward orientation requires positive tets (see doctor.h). Node ids must be in [0,
+// node_count).
 Surface build_surface(std::span<const Tet> tets, Index node_count);
 
 // Elements that share a node belong to one component. Components are numbered by their first

@@ -1,4 +1,4 @@
-// A tetrahedral mesh as a file or a shape gives it: geometry and labels, no material.
+// A tetrahedral mesh from a file or a shape: geometry and labels, without material.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@ struct TetMesh {
   std::vector<Tet> tets;        // node ids (tets)
   std::vector<int> tet_label;   // region label (tets); empty: all 0
   std::vector<int> node_label;  // label (nodes); empty: none
-  std::vector<Triangle> faces;  // labelled faces, as the file gives them (faces); may be empty
+  std::vector<Triangle> faces;  // labelled faces of the file (faces); may be empty
   std::vector<int> face_label;  // label (faces)
 
   Index node_count() const { return static_cast<Index>(nodes.size()); }

@@ -18,10 +18,9 @@ constexpr std::string_view kStyle = R"(
     --bad: #ff9a5c; } }
 body { font: 16px/1.5 system-ui, sans-serif; color: var(--ink); background: var(--page);
   max-width: 72rem; margin: 2rem auto; padding: 0 1rem; }
-h1 { font-size: 1.7rem; } h2 { font-size: 1.3rem; margin-top: 2.2rem; } h3 { font-size: 1.05rem; }
+h1 { font-size: 1.7rem; } h2 { font-size: 1.3rem; margin-top: 2.2rem; }
 p, ul { max-width: 46rem; }
 nav ul { columns: 14rem; padding-left: 1.2rem; } a { color: inherit; }
-pre { overflow-x: auto; padding: 0.6rem 0.8rem; border: 1px solid var(--rule); }
 .wide { overflow-x: auto; margin: 1rem 0; }
 table { border-collapse: collapse; font-size: 0.9rem; font-variant-numeric: tabular-nums; }
 caption { text-align: left; padding-bottom: 0.4rem; color: var(--soft); }
@@ -59,11 +58,6 @@ Page& Page::heading(std::string_view text) {
   return *this;
 }
 
-Page& Page::subheading(std::string_view text) {
-  body_ += fmt::format("<h3>{}</h3>\n", escaped(text));
-  return *this;
-}
-
 Page& Page::paragraph(std::string_view text) {
   body_ += fmt::format("<p>{}</p>\n", escaped(text));
   return *this;
@@ -74,11 +68,6 @@ Page& Page::list(const std::vector<std::string>& items) {
   body_ += "<ul>\n";
   for (const std::string& item : items) body_ += fmt::format("<li>{}</li>\n", escaped(item));
   body_ += "</ul>\n";
-  return *this;
-}
-
-Page& Page::preformatted(std::string_view text) {
-  body_ += fmt::format("<pre>{}</pre>\n", escaped(text));
   return *this;
 }
 

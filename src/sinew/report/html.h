@@ -1,5 +1,5 @@
-// A report as one HTML file: no script, no second file, readable in light and dark mode and on
-// paper. What it holds is escaped; the page is well-formed XML as well.
+// A report as one HTML file without scripts, readable in light and dark mode and on paper. All text
+// is escaped; the page is also well-formed XML.
 #pragma once
 
 #include <string>
@@ -11,17 +11,15 @@
 
 namespace sinew::report {
 
-// Parts appear in the order in which they are added. Figures that follow each other stand side by
-// side where the window is wide enough.
+// Parts appear in the order in which they are added. Consecutive figures are side by side if the
+// window is wide enough.
 class Page {
  public:
   explicit Page(std::string title);
 
   Page& heading(std::string_view text);  // a section; several of them get a list of contents
-  Page& subheading(std::string_view text);
   Page& paragraph(std::string_view text);
   Page& list(const std::vector<std::string>& items);
-  Page& preformatted(std::string_view text);  // keeps its lines: a command, a scene
   Page& table(const Table& table);
   Page& figure(const Plot& plot, std::string_view caption = {});
   Page& figure(const BarChart& chart, std::string_view caption = {});

@@ -29,7 +29,7 @@ constexpr double kSlant = 35.0;   // [degrees] of long group names
 constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr int kSmallest = 160;  // width and height of a picture
 
-// The ends of what is drawn: beyond them differences overflow or are lost.
+// The range of drawn values: beyond it differences overflow or are lost.
 constexpr double kHuge = 1e300;
 constexpr double kTiny = 1e-300;
 
@@ -323,7 +323,7 @@ std::string Frame::wrap(const std::string& clipped, const std::string& free) con
       "font-size=\"{3}\" fill=\"currentColor\">\n",
       layout_.width, layout_.height, escaped(layout_.title), kText);
   out += title_and_legend() + grid_and_ticks();
-  // An <svg> within clips what it holds, and needs no id that another plot of the page could have.
+  // A nested <svg> clips its content, and needs no id that another plot of the page could have.
   out += fmt::format(
       "<svg x=\"{0:.1f}\" y=\"{1:.1f}\" width=\"{2:.1f}\" height=\"{3:.1f}\" "
       "viewBox=\"{0:.1f} {1:.1f} {2:.1f} {3:.1f}\" overflow=\"hidden\">\n{4}</svg>\n",

@@ -1,4 +1,4 @@
-// What every plot has around its data: title, legend, axes, levels. For svg_plot.cpp.
+// The frame of a plot: title, legend, axes, levels. For svg_plot.cpp.
 #pragma once
 
 #include <optional>
@@ -11,10 +11,10 @@
 
 namespace sinew::report {
 
-inline constexpr int kStyles = 7;  // colours and marks; series beyond them begin again
+inline constexpr int kStyles = 7;  // colours and marks; further series repeat them
 
 std::string_view color_of(int style);
-// The mark of a style around (x, y), with a text for hovering where that is not empty. [px]
+// The mark of a style at (x, y) [px], with a tooltip unless `hover` is empty.
 std::string mark(int style, double x, double y, const std::string& hover = {});
 
 // From values to the share of an axis between 0 (its low end) and 1.
@@ -27,9 +27,8 @@ struct Scale {
   double share(double value) const;
 };
 
-// An axis over these values, those that it cannot show left out; `with_zero` has 0 in it as well.
-// Ends that the caller gave are kept where they leave a range. No values: 0 to 1 (1 to 10 where
-// log).
+// An axis over these values, without those that it cannot show; `with_zero` includes 0. The
+// caller's ends are kept if they leave a range. Without values: 0 to 1 (logarithmic: 1 to 10).
 Scale make_scale(const Axis& axis, const std::vector<double>& values, bool with_zero = false);
 
 struct LegendEntry {
@@ -48,7 +47,7 @@ class Frame {
     int width = 560, height = 370;    // [px]
   };
 
-  // `x` is absent where the layout has groups.
+  // `x` is absent if the layout has groups.
   Frame(Layout layout, std::optional<Scale> x, Scale y);
 
   double x_at(double share) const { return left_ + share * (right_ - left_); }    // [px]

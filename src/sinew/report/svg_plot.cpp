@@ -11,7 +11,8 @@ namespace sinew::report {
 
 namespace {
 
-// Marks of a series with more points would hide each other, and their texts swell the page.
+// With more points the marks of a series would hide each other, and their tooltips enlarge the
+// page.
 constexpr std::size_t kMostHovers = 500;
 
 int style_of(int style, std::size_t place) {
@@ -25,7 +26,7 @@ std::string data_line(const std::string& path, const Series& series, int style) 
       path, color_of(style), series.dashed ? " stroke-dasharray=\"6 4\"" : "");
 }
 
-// Adds all levels that the axis can show to what it has to cover.
+// Adds all levels that the axis can show to the values that it covers.
 void add_levels(const std::vector<Level>& levels, std::vector<double>& values) {
   for (const Level& level : levels) values.push_back(level.at);
 }
@@ -73,7 +74,7 @@ std::string to_svg(const Plot& plot) {
         pen_down = false;
         continue;
       }
-      // Far outside of the axes the place does not matter, but has to be a short number.
+      // Far outside the axes the position does not matter, but should be a short number.
       const double px = std::clamp(frame.x_at(x.share(s.x[p])), -1e5, 1e5);
       const double py = std::clamp(frame.y_at(y.share(s.y[p])), -1e5, 1e5);
       path += fmt::format("{}{:.1f} {:.1f}", pen_down ? "L" : "M", px, py);

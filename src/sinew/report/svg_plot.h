@@ -1,8 +1,7 @@
 // Plots as SVG: lines and points over two axes, bars in groups. Text and axes have the colour of
-// the text around them, so that a page in dark mode needs nothing else; series have the colours of
-// Okabe and Ito (2008, "Color Universal Design"), which readers with any colour vision tell apart,
-// and marks of their own shape. Values that are not finite, or not positive on a logarithmic axis,
-// are left out, and a line has a gap there.
+// the surrounding text, so they suit dark mode. Series have the colours of Okabe and Ito (2008,
+// "Color Universal Design"), which suit any colour vision, and marks of different shape. Values
+// that are not finite, or not positive on a logarithmic axis, are omitted; a line has a gap there.
 #pragma once
 
 #include <optional>
@@ -14,19 +13,19 @@ namespace sinew::report {
 struct Axis {
   std::string label;  // with its unit: "deflection [m]"
   bool log = false;
-  std::optional<double> low, high;  // absent: from the data, with some space around
+  std::optional<double> low, high;  // absent: from the data, with a margin
 };
 
 struct Series {
-  std::string name;          // in the legend; empty: not there
-  std::vector<double> x, y;  // (points); points that only one of them has are left out
+  std::string name;          // in the legend; empty: no entry
+  std::vector<double> x, y;  // (points); the shorter one counts
   bool line = true;          // joins the points in their order
   bool marks = true;
   bool dashed = false;
   int style = -1;  // number of colour and mark; -1: its place among the plot's series
 };
 
-// A dashed line across the plot, named at its right end: an asked value, a threshold.
+// A dashed line across the plot with a name at its right end: a target, a threshold.
 struct Level {
   std::string name;
   double at = 0.0;  // on the y axis
@@ -59,7 +58,7 @@ struct BarChart {
   int height = 370;
 };
 
-// A whole <svg> element, well-formed XML with its name space: for a page or a file of its own.
+// A complete <svg> element, well-formed XML with its namespace, for a page or a separate file.
 // Deterministic. Points and bars carry their values as <title>, which browsers show on hovering.
 std::string to_svg(const Plot& plot);
 std::string to_svg(const BarChart& chart);

@@ -1,4 +1,4 @@
-// Tables of a report: as text for the terminal; html.h puts the same ones into a page.
+// Tables of a report, as text for the terminal; html.h puts the same tables into a page.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@ namespace sinew::report {
 
 enum class Align { left, right };
 
-// What a cell says about its row, beyond its text: a page colours it.
+// The rating of a cell; a page colours it.
 enum class Tone { plain, good, bad };
 
 struct Column {
@@ -27,12 +27,12 @@ struct Cell {
 
 struct Table {
   std::vector<Column> columns;
-  std::vector<std::vector<Cell>> rows;  // (rows, columns); missing cells are empty, others left out
-  std::string caption;                  // a sentence above it; may be empty
+  std::vector<std::vector<Cell>> rows;  // (rows, columns); missing cells are empty
+  std::string caption;                  // a sentence above the table; may be empty
 };
 
-// Columns as wide as their widest cell, two spaces between them, a rule under the titles, a newline
-// after each line; no spaces at the ends of lines. Empty for a table without columns.
+// Columns have the width of their widest cell, with two spaces between them, a rule under the
+// titles, and a newline after each line; no trailing spaces. Empty for a table without columns.
 std::string to_text(const Table& table);
 
 }  // namespace sinew::report

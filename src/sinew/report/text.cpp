@@ -14,8 +14,8 @@ bool continues(std::string_view text, std::size_t at) {
   return at < text.size() && (static_cast<unsigned char>(text[at]) & 0xC0U) == 0x80U;
 }
 
-// Bytes of the UTF-8 code point that begins here; 0 where none does (RFC 3629: no overlong forms,
-// surrogates or values above U+10FFFF), or where XML has no such character.
+// Bytes of the UTF-8 code point that begins here; 0 if there is none (RFC 3629: no overlong forms,
+// surrogates or values above U+10FFFF), or if XML has no such character.
 std::size_t code_point(std::string_view text, std::size_t at) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(at);
@@ -28,7 +28,7 @@ std::size_t code_point(std::string_view text, std::size_t at) {
   if ((first == 0xE0 && second < 0xA0) || (first == 0xED && second > 0x9F) ||
       (first == 0xF0 && second < 0x90) || (first == 0xF4 && second > 0x8F))
     return 0;
-  // U+FFFE and U+FFFF are no characters of XML.
+  // U+FFFE and U+FFFF are not characters of XML.
   if (first == 0xEF && second == 0xBF && byte(at + 2) >= 0xBE) return 0;
   return length;
 }

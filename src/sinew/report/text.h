@@ -7,17 +7,17 @@
 namespace sinew::report {
 
 // Text for an element or attribute of XML and HTML: < > & " ' as entities; bytes that are not UTF-8
-// and control characters that XML 1.0 does not know as U+FFFD.
+// and control characters that XML 1.0 does not allow become U+FFFD.
 std::string escaped(std::string_view text);
 
-// How many characters a text has: its UTF-8 code points.
+// The number of characters of a text: its UTF-8 code points.
 int width(std::string_view text);
 
-// A number with so many significant digits, trailing zeros left out: "15.2", "1.5e-07". What is not
-// finite is "-" (NaN), "inf", "-inf".
+// A number with this many significant digits, without trailing zeros: "15.2", "1.5e-07". NaN is
+// "-", infinity "inf" or "-inf".
 std::string number(double value, int digits = 4);
 
-// A share as per cent with its sign: percent(-0.165) is "-16.5 %". NaN is "-".
+// A share as a percentage with its sign: percent(-0.165) is "-16.5 %". NaN is "-".
 std::string percent(double share, int decimals = 1);
 
 }  // namespace sinew::report

@@ -34,11 +34,11 @@ std::string decimal(double value, int decimals) {
   return (value < 0.0 && !zero ? kMinus : "") + text;
 }
 
-// Labels that tell values apart that differ by `step`, all in one notation.
+// Labels that distinguish values that differ by `step`, all in one notation.
 std::vector<std::string> linear_labels(const std::vector<double>& at, double step) {
   double largest = 0.0;
   for (const double value : at) largest = std::max(largest, std::abs(value));
-  // The ends of what is read at a glance without powers of ten.
+  // The range of numbers that are legible without powers of ten.
   const bool plain = largest < 1e5 && step >= 0.999e-4;
   const int top = largest > 0.0 ? exponent_of(largest * (1.0 + 1e-12)) : 0;
   const int step_exponent = exponent_of(step * (1.0 + 1e-12));

@@ -1,4 +1,4 @@
-// Where an axis has its ticks and what they say.
+// Positions and labels of an axis's ticks.
 #pragma once
 
 #include <string>
@@ -11,12 +11,12 @@ struct Ticks {
   std::vector<std::string> labels;  // (ticks); UTF-8: "−0.5", "2·10⁻⁵"
 };
 
-// Multiples of 1, 2 or 5 times a power of ten, at most about `most` of them. Wants low < high, both
-// finite, and a span that is not lost in the rounding of its ends (see Scale in svg_frame.h).
+// Multiples of 1, 2 or 5 times a power of ten, at most about `most` of them. Requires low < high,
+// both finite, and a span that exceeds the rounding error of its ends (see Scale in svg_frame.h).
 Ticks linear_ticks(double low, double high, int most = 7);
 
-// Powers of ten, thinned to at most about `most`; with 2 and 5 between them where the range is less
-// than three decades; linear ones where even these are too few. Wants 0 < low < high.
+// Powers of ten, thinned to at most about `most`; with 2 and 5 between them if the range is less
+// than three decades; linear ticks if even these are too few. Requires 0 < low < high.
 Ticks log_ticks(double low, double high, int most = 7);
 
 }  // namespace sinew::report

@@ -2,10 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "sinew/base/error.h"
+#include "sinew/base/text.h"
 #include "sinew/io/mesh_io.h"
+#include "sinew/scene/document.h"
 
 namespace sinew {
 namespace {
@@ -17,20 +17,9 @@ constexpr double most_metres = 10.0;
 std::string body_name(const std::string& stem) {
   std::string name;
   for (const char c : stem.substr(0, 64)) {
-    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                      c == '_' || c == '-';
-    name += good ? c : '_';
+    name += is_name_character(c) ? c : '_';
   }
   return name.empty() ? "body" : name;
-}
-
-std::string toml_text(const std::string& text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') out += '\\';
-    out += c;
-  }
-  return out + '"';
 }
 
 }  // namespace
@@ -74,11 +63,7 @@ Scene scene_around(const std::filesystem::path& mesh, const std::vector<std::str
 Scene load_scene_or_mesh(const std::filesystem::path& file,
                          const std::vector<std::string>& overrides,
                          const FrameworkOptions& options) {
-  std::string ending = file.extension().string();
-  for (char& c : ending) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  const std::vector<std::string>& meshes = io::mesh_endings();
-  const bool is_mesh = std::find(meshes.begin(), meshes.end(), ending) != meshes.end();
-  if (is_mesh && !options.any()) return scene_around(file, overrides);
+  if (io::is_mesh_name(file) && !options.any()) return scene_around(file, overrides);
   return load_framework_scene(file, options, overrides);
 }
 

@@ -76,7 +76,7 @@ void assign_regions(const PlacedBody& placed, BodySpec& spec) {
   }
 }
 
-// Finite materials can still multiply to something that is not.
+// Products of finite material values may still overflow.
 void check_finite(const Model& model, const SceneBody& body) {
   const Body& b = model.bodies.back();
   bool good = true;
@@ -140,11 +140,12 @@ std::vector<PlacedBody> add_bodies(const Scene& scene, Model& model, BuildReport
   return bodies;
 }
 
-// ---- what acts on them ----
+// ---- loads and obstacles ----
 
-// Pressure per depth of an obstacle [N/m3], so that it enters the stiffest body by a small part of
-// the radius a of the contact. Hertz: the largest pressure is 2 E* a / (pi R), E* = E / (1 - nu^2),
-// the depth that over this stiffness: 2 / (200 pi) a = 0.3 % of a where R is the smaller length.
+// Pressure per depth of an obstacle [N/m3], chosen so that the penetration of the stiffest body is
+// a small part of the contact radius a. Hertz: the largest pressure is 2 E* a / (pi R), E* = E / (1
+// - nu^2); divided by this stiffness it gives the depth 2 / (200 pi) a = 0.3 % of a if R is the
+// smaller length.
 double default_obstacle_stiffness(const std::vector<PlacedBody>& bodies, double radius) {
   double length = radius;
   double modulus = 0.0;
@@ -238,7 +239,7 @@ class Parts {
     model_.loads.push_back(std::move(load));
   }
 
-  // The triangles of the body's surface all of whose nodes are in the load.
+  // The surface triangles of the body whose nodes are all in the load.
   void add_faces(Load& load, const PlacedBody& placed, const std::string& what,
                  const Location& where) const {
     std::vector<bool> chosen(placed.mesh.nodes.size(), false);
@@ -288,7 +289,7 @@ bool can_move(const Model& model, const Body& body) {
   return false;
 }
 
-// What is inside what as the run starts: a pair is said once, by the side that is deeper.
+// Overlaps at the start of the run: each pair is reported once, by the deeper side.
 std::vector<std::string> overlap_warnings(const Model& model) {
   constexpr std::size_t most = 5;  // pairs that are named
   constexpr double small = 1e-3;   // of the other body's mean tet: bodies that lie flush

@@ -1,4 +1,4 @@
-// From a scene to a Model: meshes read and placed, springs made, nodes selected.
+// Builds a Model from a scene: reads and places meshes, makes springs, selects nodes.
 #pragma once
 
 #include <string>
@@ -9,23 +9,23 @@
 
 namespace sinew {
 
-// What a user should know about the bodies before the run.
+// Facts about the bodies for the user, before the run.
 struct BuildReport {
   struct Body {
     std::string name;
     std::string mesh;  // the file, or "shape beam"
     Index nodes = 0;
     Index tets = 0;
-    std::vector<std::string> warnings;  // what was repaired; sizes that look wrong
+    std::vector<std::string> warnings;  // repairs; implausible sizes
   };
   std::vector<Body> bodies;
-  std::vector<std::string> warnings;  // bodies that are inside each other at the start
+  std::vector<std::string> warnings;  // bodies that overlap at the start
 };
 
-// Throws Error(input), at the place in the scene file where there is one, for a mesh that is
-// missing or cannot be used, a label that the mesh does not have, a selection without nodes, a node
-// held by two pins. The Model's nodes are those of the mesh files in their order, without nodes
-// that no tet has.
+// Throws Error(input), with the place in the scene file if there is one, for a mesh that is missing
+// or cannot be used, a label that the mesh does not have, a selection without nodes, a node in two
+// pins. The Model's nodes are those of the mesh files in their order, without nodes that belong to
+// no tet.
 Model build_model(const Scene& scene, BuildReport* report = nullptr);
 
 }  // namespace sinew

@@ -75,7 +75,7 @@ class Connector {
                   "raise within, select other nodes, or move the bodies together", a.where);
   }
 
-  // The one node that an end of a distance is.
+  // The node at an end of a distance.
   Index end_of(const SceneDistance& d, const std::string& body, const Selection& selection,
                const std::string& key) const {
     const std::string what = fmt::format("'{}' of [distance.{}]", key, d.name);

@@ -1,4 +1,4 @@
-// What ties bodies to points and to each other: attachments, glue, distances.
+// Connections of bodies to points and to each other: attachments, glue, distances.
 #pragma once
 
 #include <vector>
@@ -9,9 +9,9 @@
 
 namespace sinew {
 
-// Adds the scene's attachments and distances to the model, which has all of its bodies. Throws
-// Error(input), at the place in the scene file, for a selection without nodes, a distance that is
-// not between two nodes apart from each other, glue that reaches nothing.
+// Adds the scene's attachments and distances to the model, which must have all of its bodies.
+// Throws Error(input), with the place in the scene file, for a selection without nodes, a distance
+// between coincident nodes, or glue without a surface in reach.
 void connect(const Scene& scene, const std::vector<PlacedBody>& bodies, Model& model);
 
 // The body of that name.

@@ -4,9 +4,10 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
 #include <tuple>
+
+#include "sinew/base/text.h"
 
 namespace sinew {
 
@@ -14,9 +15,9 @@ namespace {
 
 // ---- limits ----
 
-// The TOML library recurses over what it has parsed, so the depth is bounded before it sees the
-// text: arrays and braces open at once, and the dots of one key. Follows strings and comments just
-// as far as that needs.
+// The TOML library recurses over its result, so the depth is limited before it parses the text: the
+// number of open arrays and braces, and the dots of one key. Strings and comments are followed only
+// as far as necessary.
 class DepthCheck {
  public:
   DepthCheck(std::string_view text, const std::string& file) : text_(text), file_(file) {}
@@ -52,7 +53,7 @@ class DepthCheck {
     at_ += multiline ? 3 : 1;
     while (at_ < text_.size()) {
       if (text_[at_] == '\n') {
-        if (!multiline) return;  // not TOML: the parser says so
+        if (!multiline) return;  // not TOML: the parser reports it
         ++line_;
         line_start_ = at_ + 1;
       }
@@ -135,36 +136,18 @@ DocValue convert(const toml::node& node, const std::string& file) {
 // ---- and back to text ----
 
 bool bare(std::string_view key) {
-  return !key.empty() && std::all_of(key.begin(), key.end(), [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-';
-  });
-}
-
-std::string toml_string(std::string_view text) {
-  std::string out = "\"";
-  for (const char c : text) {
-    if (c == '"' || c == '\\') {
-      out += '\\';
-      out += c;
-    } else if (c == '\n') {
-      out += "\\n";
-    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
-      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
-    } else {
-      out += c;
-    }
-  }
-  return out + '"';
+  return !key.empty() && std::all_of(key.begin(), key.end(), is_name_character);
 }
 
 std::string key_text(const std::string& key) {
-  return bare(key) ? key : toml_string(key);
+  return bare(key) ? key : toml_text(key);
 }
 
 std::string number_text(double number) {
   if (std::isnan(number)) return "nan";
   std::string text = fmt::format("{}", number);
-  if (text.find_first_of(".en") == std::string::npos) text += ".0";  // or it reads as an integer
+  if (text.find_first_of(".en") == std::string::npos)
+    text += ".0";  // otherwise TOML reads an integer
   return text;
 }
 
@@ -178,7 +161,7 @@ std::string inline_text(const DocValue& value) {
     case DocValue::Type::number:
       return number_text(value.number);
     case DocValue::Type::text:
-      return toml_string(value.text);
+      return toml_text(value.text);
     case DocValue::Type::array:
       for (const DocValue& item : value.items) out += (out.empty() ? "" : ", ") + inline_text(item);
       return '[' + out + ']';
@@ -204,6 +187,23 @@ void write_table(const DocValue& table, const std::string& path, std::string& ou
 }
 
 }  // namespace
+
+std::string toml_text(std::string_view text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') {
+      out += '\\';
+      out += c;
+    } else if (c == '\n') {
+      out += "\\n";
+    } else if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) {
+      out += fmt::format("\\u{:04X}", static_cast<unsigned>(c));
+    } else {
+      out += c;
+    }
+  }
+  return out + '"';
+}
 
 const DocValue* DocValue::find(std::string_view key) const {
   for (const DocEntry& entry : entries)

@@ -1,5 +1,5 @@
-// A scene file as a tree: TOML's values in the file's order, each with the place it came from.
-// The rest of the room reads this tree and never sees the TOML library.
+// A scene file as a tree: TOML's values in the order of the file, each with its place in the file.
+// The rest of the room reads this tree and does not use the TOML library.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,7 @@ struct DocValue {
   Location where;
 
   bool is_table() const { return type == Type::table; }
-  // The value of a table's key; null where there is none.
+  // The value of a table's key; null if there is none.
   const DocValue* find(std::string_view key) const;
   DocValue* find(std::string_view key);
 };
@@ -37,19 +37,22 @@ struct DocEntry {
   Location where;  // of the key
 };
 
-// The most text a scene may hold, and the deepest nesting of its keys, tables and arrays.
+// Maximum size of a scene's text, and maximum nesting depth of its keys, tables and arrays.
 inline constexpr std::size_t kMaxSceneBytes = 4 << 20;
 inline constexpr int kMaxSceneDepth = 32;
 
-// Parses TOML 1.0. Error(input) with line and column where it is not TOML, holds dates (no key of a
-// scene takes one), or is larger or deeper than the limits above.
+// Parses TOML 1.0. Error(input) with line and column if it is not TOML, contains dates (no key of a
+// scene takes one), or exceeds the limits above.
 DocValue parse_document(std::string_view text, const std::string& file_name);
 
-// The tree as TOML: every table under a header of its own, tables within arrays in braces. Numbers
-// keep all their digits, so that parse_document gives the same tree but for the places.
+// The tree as TOML: every table under its own header, tables within arrays in braces. Numbers have
+// full precision, so parse_document gives the same tree except for the places.
 std::string write_document(const DocValue& root);
 
-// 0.2, "tet", an array of 2, a table: a value as messages show it; long texts are cut.
+// A text as a TOML string in quotation marks, with escapes where TOML needs them.
+std::string toml_text(std::string_view text);
+
+// 0.2, "tet", an array of 2, a table: a value in messages; long texts are truncated.
 std::string describe(const DocValue& value);
 
 }  // namespace sinew

@@ -1,4 +1,4 @@
-// Values of a document (document.h) made by hand, each with the place that messages name.
+// Constructors for values of a document (document.h), each with the place that messages name.
 #pragma once
 
 #include <cstdint>

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t longest_message = 4096;
-// Part of the hash: to be raised when sinew-mesh makes other meshes of the same file.
+// Part of the hash. Increase it when sinew-mesh makes different meshes from the same file.
 constexpr int mesher_version = 1;
 
 std::string environment(const char* name) {
@@ -53,8 +53,8 @@ std::string mesher() {
   return "sinew-mesh";
 }
 
-// Runs a program and waits. Returns its exit code, or what spawning it failed with as a negative
-// errno; `told` is what it wrote to standard error.
+// Runs a program and waits. Returns its exit code, or a negative errno if it could not be started;
+// `told` receives its standard error.
 int run(const std::vector<std::string>& command, std::string& told) {
   std::array<int, 2> pipe_ends{};
   if (pipe2(pipe_ends.data(), O_CLOEXEC) != 0) return -errno;
@@ -86,7 +86,7 @@ int run(const std::vector<std::string>& command, std::string& told) {
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-// sinew-mesh's own message without its name, in two: what is wrong, and the remedy.
+// The message of sinew-mesh without its name, in two parts: the fault and the remedy.
 std::pair<std::string, std::string> split_message(std::string told) {
   constexpr std::string_view prefix = "sinew-mesh: ";
   constexpr std::string_view remedy = "\n  remedy: ";
@@ -141,7 +141,7 @@ std::string stretched_off(const fs::path& path, const Vec3& fit, const Location&
   return out;
 }
 
-// A file that goes at the end of the block.
+// A file that is removed at the end of the block.
 struct Removed {
   fs::path path;
   ~Removed() {
@@ -153,16 +153,7 @@ struct Removed {
 }  // namespace
 
 bool is_filled(const fs::path& path) {
-  return io::is_image_name(path) || is_surface(path);
-}
-
-bool is_surface(const fs::path& path) {
-  std::string ending = path.extension().string();
-  for (char& c : ending) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  const auto& surfaces = io::surface_endings();
-  return std::find(surfaces.begin(), surfaces.end(), ending) != surfaces.end();
+  return io::is_image_name(path) || io::is_surface_name(path);
 }
 
 void fit_to(std::vector<Vec3>& points, const Vec3& sides, const Location& where) {
@@ -193,10 +184,10 @@ TetMesh read_filled(const fs::path& path, double size, const Location& where,
                     const std::optional<Vec3>& fit) {
   Hash hash;
   hash.value(mesher_version);
-  hash.text(path.extension().string());  // the format goes by it
+  hash.text(path.extension().string());  // the format depends on it
   hash.value(size);
   hash.text(io::read_file(path));
-  const bool stretched = fit && is_surface(path);
+  const bool stretched = fit && io::is_surface_name(path);
   if (stretched)
     for (const double side : *fit) hash.value(side);
   const fs::path folder = cache_folder();
@@ -210,7 +201,7 @@ TetMesh read_filled(const fs::path& path, double size, const Location& where,
                               failed.message()),
                   "name another in XDG_CACHE_HOME", where);
     }
-    // Under a name of its own first: two runs may fill the same file at once.
+    // First under a unique name: two runs may fill the same file at once.
     const fs::path fresh = folder / fmt::format("{}.{}.vtu", hex(hash.digest()), getpid());
     if (stretched) {
       const fs::path surface = folder / fmt::format("{}.{}.off", hex(hash.digest()), getpid());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/base/text.h"
 #include "sinew/scene/document_values.h"
 #include "sinew/scene/filled.h"
 #include "sinew/scene/framework_text.h"
@@ -24,8 +25,8 @@ constexpr double platform_half = 100.0;
 constexpr double platform_depth = 10.0;
 constexpr std::int64_t platform_corners = 8;
 constexpr double surface_side = 25.0;  // that every axis of an OFF file is stretched to
-// Objects fall from tens of metres and are thrown back in full: what the impact squeezes is far
-// stiffer than it was, before the next look at the stable step.
+// Objects fall from tens of metres and bounce without loss: the compressed part is far stiffer than
+// before, earlier than the next update of the stable step.
 constexpr double safety = 0.3;
 constexpr double surface_mesh_size = 2.5;  // of the tets that it is filled with
 
@@ -36,7 +37,7 @@ Vec3 platform_corner(std::int64_t i) {
           side == 0 || side == 3 ? -platform_half : platform_half};
 }
 
-// Whether TOML can hold the text: it has to be UTF-8.
+// Whether TOML can hold the text: it must be UTF-8.
 bool can_be_written(std::string_view text) {
   DocValue root;
   add(root, "text", value_of(text, {}));
@@ -54,9 +55,7 @@ bool can_be_written(std::string_view text) {
 std::string body_name(std::string_view mesh, std::int64_t number) {
   std::string name = fs::path(mesh).stem().string().substr(0, 40);
   for (char& c : name) {
-    const bool good = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                      c == '_' || c == '-';
-    if (!good) c = '_';
+    if (!is_name_character(c)) c = '_';
   }
   return fmt::format("{}-{}", name, number);
 }
@@ -148,7 +147,7 @@ class Translator {
         fmt::format("write all 12: {}; no rotation is 1 0 0 0", object_layout), words.where());
   }
 
-  // Whether an option supplied its material.
+  // Whether an option gave its material.
   bool read_object(FrameworkWords& words, std::int64_t number) {
     const std::string of = fmt::format(" of object {}", number);
     refuse_short_form(words, number);

@@ -1,4 +1,4 @@
-// The words of a file of the course framework, one after the other, with their places.
+// The words of a file of the course framework, in order, with their places.
 #pragma once
 
 #include <cstddef>
@@ -20,19 +20,19 @@ struct FrameworkWord {
 
 class FrameworkWords {
  public:
-  // The text must outlive this. `layout`: how one entry is written, for messages.
+  // The text must outlive this object. `layout`: the form of one entry, for messages.
   FrameworkWords(std::string_view text, std::string file, std::string_view layout);
 
   bool at_end() const { return next_ == words_.size(); }
   std::size_t left() const { return words_.size() - next_; }
-  // Words on the line of the next one, from it on; 0 at the end, and where the entry may go on in
-  // the line below, which begins with a number.
+  // Remaining words on the line of the next one; 0 at the end, and if the entry may continue on the
+  // line below, which begins with a number.
   std::size_t words_of_entry_line() const;
-  // The place of the next word; that of the end of the text after the last one.
+  // The place of the next word; after the last word, the end of the text.
   Location where() const;
 
-  // Each reads a word; `what` says what is expected: "qx of object 3". Error (input) where it is
-  // not that, or where there is none.
+  // Each reads a word; `what` names the expected value: "qx of object 3". Error (input) if the word
+  // is missing or different.
   std::string_view word(const std::string& what);
   double number(const std::string& what);
   std::int64_t integer(const std::string& what, std::int64_t low, std::int64_t high,
@@ -48,7 +48,7 @@ class FrameworkWords {
   int last_line_ = 1;
 };
 
-// The number that a whole word is, as C++ streams read it: with a sign or without.
+// The number of a whole word, in the form of C++ streams: with or without a sign.
 std::optional<double> framework_number(std::string_view word);
 
 }  // namespace sinew

@@ -10,7 +10,7 @@
 namespace sinew {
 namespace {
 
-constexpr double hardness = 10.0;  // of a tie, against what the node resists with
+constexpr double hardness = 10.0;  // of a tie, relative to the stiffness of the node
 
 struct Place {
   Triangle triangle = {};  // node ids of the Model
@@ -32,7 +32,7 @@ class PlaceFinder {
     }
   }
 
-  // The triangle nearest to the point, and how far it is [m].
+  // The triangle nearest to the point, and its distance [m].
   std::pair<const Place*, double> nearest(const Vec3& point) const {
     const Place* best = nullptr;
     double least = std::numeric_limits<double>::infinity();
@@ -83,7 +83,7 @@ std::vector<Place> places_on(const PlacedBody& to, const std::vector<Index>& tar
   return places;
 }
 
-// What network and springs resist with where one node moves alone [N/m] (nodes).
+// Stiffness of network and springs against the motion of one node [N/m] (nodes).
 std::vector<double> resistance(const Model& model) {
   std::vector<double> k(model.rest_position.size(), 0.0);
   for (std::size_t i = 0; i + 1 < model.network_start.size(); ++i) {
@@ -107,7 +107,7 @@ Surroundings glue_nodes(Model& model, const std::vector<Index>& nodes, const Pla
   if (places.empty()) return found;
   const PlaceFinder finder(model.rest_position, std::move(places));
   const std::vector<double> resists = stiffness > 0.0 ? std::vector<double>{} : resistance(model);
-  // Nodes that lie on the surface count as touching it whatever rounding does.
+  // Nodes on the surface count as touching it, independently of rounding.
   const double reach = within + 1e-9 * to.diagonal();
   for (const Index node : nodes) {
     const auto [place, distance] = finder.nearest(model.rest_position[uz(node)]);

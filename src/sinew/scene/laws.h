@@ -11,10 +11,10 @@ struct LawChoice {
   std::string title;             // in tables
   std::string in_words;          // in the live view
   std::vector<std::string> set;  // keys of a body
-  bool classic = false;          // made of springs with a rest length: compared on one mesh only
+  bool classic = false;          // springs with a rest length: compared on one mesh only
 };
 
-// neo-hookean first: the one under test; then fem: linear tets, the one to beat.
+// The first is neo-hookean, the law under test; the second is fem, linear tets, for comparison.
 inline const std::vector<LawChoice>& law_choices() {
   static const std::vector<LawChoice> laws = {
       {"neo-hookean", "network", "Neo-Hookean network", {"law=neo-hookean"}, false},
@@ -26,7 +26,7 @@ inline const std::vector<LawChoice>& law_choices() {
   return laws;
 }
 
-// Null where there is none of that name.
+// Null if there is none of that name.
 inline const LawChoice* find_law(const std::string& name) {
   for (const LawChoice& law : law_choices())
     if (law.name == name) return &law;

@@ -1,4 +1,4 @@
-// The nearest of a list of points, found without looking at all of them.
+// The nearest of a list of points, found without a test of all of them.
 #pragma once
 
 #include <span>
@@ -10,10 +10,10 @@ namespace sinew {
 
 class NearestNode {
  public:
-  // The points x[n] of `nodes`, which may not be empty; x must outlive this.
+  // The points x[n] of `nodes`, which must not be empty; x must outlive this object.
   NearestNode(std::span<const Vec3> x, std::vector<Index> nodes);
 
-  // The node nearest to the point; of those equally near the lowest.
+  // The node nearest to the point; of equals the lowest.
   Index operator()(const Vec3& point) const;
 
  private:

@@ -89,8 +89,8 @@ class Override {
     path_.insert(path_.begin(), holders.front());
   }
 
-  // An override changes what a scene has: path_[at + 1] has to be an entry of the named table that
-  // the path up to `at` leads to.
+  // An override changes existing parts: path_[at + 1] must be an entry of the named table at the
+  // path up to `at`.
   void require_named(std::size_t at) {
     if (path_.size() < at + 2 || (at == 0 && std::find(named_tables.begin(), named_tables.end(),
                                                        path_[0]) == named_tables.end()))
@@ -108,7 +108,7 @@ class Override {
         "--set changes what the scene file has", where_);
   }
 
-  // The entry or item of that name; an entry that is missing is made.
+  // The entry or item of that name; a missing entry is created.
   DocValue& step_into(DocValue& parent, const std::string& part) {
     if (parent.type == DocValue::Type::array) {
       std::size_t index = 0;
@@ -146,7 +146,7 @@ class Override {
     return out;
   }
 
-  // The scene's document holds it, and has to be read back.
+  // The scene's document contains it and must be readable.
   void require_text(const DocValue& value) const {
     DocValue document;
     document.entries.push_back({"value", value, where_});

@@ -10,12 +10,12 @@ namespace sinew {
 
 // Writes each "path=value" into the document, in order.
 //
-// The path is that of the file (body.beam.young, output.fps, pin.end.path.1.time); where it begins
-// with the name of a body, or of one pin, attachment, force or probe, it goes there (beam.young).
-// The value is TOML; what is not TOML is taken as text, so that law=lloyd needs no quotes.
+// The path is that of the file (body.beam.young, output.fps, pin.end.path.1.time), or starts with
+// the name of a body, or with the unique name of a pin, attachment, force or probe (beam.young).
+// The value is TOML; anything else is taken as text, so law=lloyd needs no quotes.
 //
-// Error(usage) where there is no '=' or no path; Error(input) where nothing has that name. Keys and
-// values are checked later with those of the file; their place is "--set path=value".
+// Error(usage) if there is no '=' or no path; Error(input) if nothing has that name. Keys and
+// values are validated later with those of the file; their place is "--set path=value".
 void apply_overrides(DocValue& root, const std::vector<std::string>& overrides);
 
 }  // namespace sinew

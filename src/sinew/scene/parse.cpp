@@ -2,10 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <cctype>
+#include <algorithm>
 #include <fstream>
 #include <sstream>
 
+#include "sinew/base/text.h"
 #include "sinew/scene/framework.h"
 #include "sinew/scene/overrides.h"
 
@@ -17,9 +18,8 @@ constexpr double kMaxFrames = 1e6;
 
 // Names become parts of file names, table columns and --set paths.
 void check_name(const DocEntry& entry, std::string_view kind) {
-  bool good = !entry.key.empty() && entry.key.size() <= 64;
-  for (const char c : entry.key)
-    good = good && (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-');
+  const bool good = !entry.key.empty() && entry.key.size() <= 64 &&
+                    std::all_of(entry.key.begin(), entry.key.end(), is_name_character);
   if (!good)
     throw Error(ErrorKind::input,
                 fmt::format("'{}' cannot name a {}; expected 1 to 64 letters, digits, '_' or '-'",

@@ -1,12 +1,10 @@
 #include <fmt/format.h>
 
-
 #include "sinew/scene/parse.h"
 
 namespace sinew {
 
 namespace {
-
 
 Selection::Box parse_box(const DocValue& value, const std::string& name) {
   const Reader reader(value, name, {&key_tables().box});

@@ -7,6 +7,7 @@
 #include <numeric>
 
 #include "sinew/io/mesh_io.h"
+#include "sinew/io/surface_file.h"
 #include "sinew/mesh/doctor.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/size.h"
@@ -106,7 +107,7 @@ void make_sound(PlacedBody& placed) {
 // The ids of a surface's file are those of its vertices: each stands for the node nearest to it.
 void take_ids_of_surface(PlacedBody& placed) {
   const SceneBody& body = *placed.body;
-  if (body.shape != BodyShape::file || !is_surface(body.mesh)) return;
+  if (body.shape != BodyShape::file || !io::is_surface_name(body.mesh)) return;
   std::vector<Index> nodes(placed.mesh.nodes.size());
   std::iota(nodes.begin(), nodes.end(), 0);
   const NearestNode nearest(placed.mesh.nodes, std::move(nodes));

@@ -15,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-
 [[noreturn]] void refuse(const SceneObstacle& o, const std::string& what,
                          const std::string& remedy) {
   throw Error(ErrorKind::input, fmt::format("the mesh of [obstacle.{}] {}", o.name, what), remedy,
@@ -24,11 +23,7 @@ namespace fs = std::filesystem;
 
 io::SurfaceSoup read_soup(const Scene& scene, const SceneObstacle& o) {
   const fs::path path = fs::path(scene.base) / o.mesh;
-  std::string ending = path.extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  const std::vector<std::string>& known = io::surface_endings();
-  if (std::find(known.begin(), known.end(), ending) == known.end())
+  if (!io::is_surface_name(path))
     refuse(o, fmt::format("is no surface: {}", o.mesh),
            "name a file .off .obj .stl .ply; a tet mesh is a body, and a body can be pinned whole");
   std::error_code failed;

@@ -1,4 +1,4 @@
-// The triangles of an obstacle that is a mesh, read from a file of a surface and placed.
+// The triangles of a mesh obstacle, read from a surface file and placed in the world.
 #pragma once
 
 #include <vector>
@@ -12,9 +12,9 @@ struct RigidMesh {
   std::vector<Triangle> triangles;  // indices into vertices, counter-clockwise seen from outside
 };
 
-// x = center + R(rotation) scale X. Vertices in one place become one, triangles without area are
-// left out. Error(input), at the obstacle's key `mesh`, where the file is missing or no surface,
-// has no triangle with an area, is not wound the same way all over, or is placed too far out.
+// x = center + R(rotation) scale X. Coincident vertices become one, triangles without area are
+// omitted. Error(input), at the obstacle's key `mesh`, if the file is missing or not a surface, has
+// no triangle with an area, is not wound consistently, or is placed too far away.
 RigidMesh read_rigid_mesh(const Scene& scene, const SceneObstacle& obstacle);
 
 }  // namespace sinew

@@ -121,7 +121,7 @@ class Selector {
     keep_listed(listed);
   }
 
-  // The lowest id of those equally near.
+  // Of equals the lowest id.
   void by_nearest(const Vec3& point) {
     std::size_t best = chosen_.size();
     double best_distance = std::numeric_limits<double>::infinity();

@@ -1,4 +1,4 @@
-// The nodes that a selection of a scene means.
+// The nodes of a selection.
 #pragma once
 
 #include <string>
@@ -9,9 +9,9 @@
 namespace sinew {
 
 // Node ids of the body's mesh, ascending; at least one. `what` names the selection in messages:
-// "'select' of [pin.end]". A place on a boundary counts as inside, within 1e-9 of the body's
-// diagonal. `nearest` picks from the nodes that meet every other condition.
-// Error(input) where no node meets the conditions, or a label or node id is not in the mesh.
+// "'select' of [pin.end]". A point on a boundary counts as inside, within 1e-9 of the body's
+// diagonal. `nearest` chooses from the nodes that meet every other condition.
+// Error(input) if no node meets the conditions, or a label or node id is not in the mesh.
 std::vector<Index> select_nodes(const PlacedBody& body, const Selection& select,
                                 const std::string& what);
 

@@ -17,7 +17,8 @@ namespace {
 
 using Type = DocValue::Type;
 
-// The file is ours, not the user's: a fault in it is a fault of Sinew, and a test reads it.
+// The file belongs to Sinew, not to the user: a fault in it is a fault of Sinew, and a test reads
+// it.
 [[noreturn]] void refuse(const std::string& what, const Location& where) {
   throw Error(ErrorKind::internal, what, {}, where);
 }

@@ -11,41 +11,41 @@
 
 namespace sinew {
 
-// A publication, and what it says about a tissue.
+// A publication and its statement about a tissue.
 struct TissueSource {
   std::string authors;
   int year = 0;
   std::string title;
   std::string journal;  // or book, with volume and pages
-  std::string doi;      // empty where it is not known
-  std::string says;     // what the tissue's values come from
+  std::string doi;      // empty if it is not known
+  std::string says;     // the source of the tissue's values
 };
 
 struct Tissue {
   std::string name;                   // `material = "liver"`
   std::string title;                  // "Liver, healthy human parenchyma"
   double young = 0.0;                 // [Pa] small-strain Young's modulus
-  double young_lowest = 0.0;          // [Pa] of what the sources report
+  double young_lowest = 0.0;          // [Pa] lowest value in the sources
   double young_highest = 0.0;         // [Pa]
   double poisson = 0.0;               // [-]
   double density = 0.0;               // [kg/m3]
   std::optional<double> loss_factor;  // [-] loss modulus over storage modulus
-  std::string conditions;             // in or ex vivo, strain, frequency, what else matters
+  std::string conditions;             // in or ex vivo, strain, frequency and other conditions
   std::vector<TissueSource> sources;
 };
 
-// All of them, in the order of their names.
+// All tissues, in the order of their names.
 const std::vector<Tissue>& tissues();
 
-// The tissue of that name; null where there is none.
+// The tissue of that name; null if there is none.
 const Tissue* find_tissue(std::string_view name);
 
-// "there is no material 'livr'; did you mean 'liver'?" and the names that there are: the message
-// and the remedy for a name that find_tissue does not know.
+// "there is no material 'livr'; did you mean 'liver'?" and the list of names: message and remedy
+// for a name that find_tissue does not find.
 std::string unknown_tissue_message(std::string_view name);
 std::string tissue_names();
 
-// Sets young, poisson and density to the tissue's; the rest stays.
+// Sets young, poisson and density to those of the tissue; the rest does not change.
 void apply(const Tissue& tissue, Material& material);
 
 }  // namespace sinew

@@ -2,21 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <cctype>
 #include <random>
 
+#include "sinew/base/text.h"
+
 namespace sinew::server {
-namespace {
-
-std::string lower(std::string_view text) {
-  std::string out(text);
-  std::transform(out.begin(), out.end(), out.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return out;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 bool is_loopback(std::string_view address) {
   return address == "localhost" || address == "::1" || address.starts_with("127.");
@@ -24,7 +15,7 @@ bool is_loopback(std::string_view address) {
 
 bool host_allowed(const Door& door, std::string_view host) {
   if (!door.token.empty()) return true;
-  const std::string name = lower(host);
+  const std::string name = lower_case(host);
   for (const char* own : {"127.0.0.1", "localhost", "[::1]"}) {
     if (name == fmt::format("{}:{}", own, door.port)) return true;
     if (door.port == 80 && name == own) return true;
@@ -33,7 +24,7 @@ bool host_allowed(const Door& door, std::string_view host) {
 }
 
 bool origin_allowed(std::string_view origin, std::string_view host) {
-  return origin.empty() || lower(origin) == "http://" + lower(host);
+  return origin.empty() || lower_case(origin) == "http://" + lower_case(host);
 }
 
 std::string_view query_value(std::string_view target, std::string_view key) {

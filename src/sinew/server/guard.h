@@ -1,4 +1,4 @@
-// Who may talk to the server: pure functions on what a request says. docs/protocol.md, "Safety".
+// Access control of the server: pure functions of a request. docs/protocol.md, "Safety".
 #pragma once
 
 #include <string>
@@ -7,27 +7,27 @@
 namespace sinew::server {
 
 struct Door {
-  std::string host = "127.0.0.1";  // the address it listens at
+  std::string host = "127.0.0.1";  // the listening address
   unsigned short port = 0;
-  std::string token;  // empty: none is needed
+  std::string token;  // empty: not required
 };
 
-// Whether the address is one that only this machine can reach.
+// Whether only this machine can reach the address.
 bool is_loopback(std::string_view address);
 
-// Without a token: the Host header has to be a name of this machine at the server's port, so that
-// no foreign name that is made to lead here (DNS rebinding) gets in. With a token any Host will do.
+// Without a token the Host header must be a name of this machine at the server's port, which
+// prevents DNS rebinding. With a token any Host is accepted.
 bool host_allowed(const Door& door, std::string_view host);
 
-// A page of another site may not open a socket here: an Origin has to be that of the Host. Programs
-// that are no browser send none.
+// A page of another site may not open a socket here: an Origin must be that of the Host. Programs
+// other than browsers send none.
 bool origin_allowed(std::string_view origin, std::string_view host);
 
-// The value of a key in the query of a target, "/live?token=abc"; empty where there is none.
+// The value of a key in the query of a target, "/live?token=abc"; empty if there is none.
 // Nothing is decoded.
 std::string_view query_value(std::string_view target, std::string_view key);
 
-// Compares all of both, however early they differ; an empty secret is none.
+// Comparison in constant time; an empty secret never matches.
 bool same_secret(std::string_view given, std::string_view secret);
 
 // Whether the target's query holds the token.

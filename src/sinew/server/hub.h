@@ -1,4 +1,4 @@
-// What all connections of a server share: who watches, who has the controls.
+// State shared by all connections of a server: the viewers, and the viewer with the controls.
 #pragma once
 
 #include <atomic>
@@ -24,11 +24,11 @@ class Socket {
   Socket& operator=(const Socket&) = delete;
 
   virtual Viewer& viewer() = 0;
-  virtual void pump() = 0;  // sends what is next, unless something is still being sent
+  virtual void pump() = 0;  // sends the next message, unless one is still being sent
   virtual void go_away() = 0;
 };
 
-// Used on the thread of Server::run() alone, but for the count of connections.
+// Used on the thread of Server::run() only, except for the count of connections.
 class Hub {
  public:
   Hub(Door its_door, const std::filesystem::path& scenes, bool begin_with_gallery)
@@ -36,7 +36,7 @@ class Hub {
 
   void join(Socket* socket);
   void leave(Socket* socket);
-  // What a viewer has said. Throws Error(usage) where it may not, or it makes no sense.
+  // Handles a message of a viewer. Throws Error(usage) if it is not permitted or not valid.
   void hear(Socket* socket, const std::string& text);
   bool controls(const Socket* socket) const { return socket == controller_; }
   // Whether a target's query holds the ticket of the viewer that has the controls.
@@ -46,10 +46,10 @@ class Hub {
 
   Door door;
   Library library;
-  bool gallery;  // whether pages begin with it
+  bool gallery;  // whether pages start with it
   std::atomic<int> connections{0};
-  int uploads = 0;                       // of files, under way
-  std::unique_ptr<live::Runner> runner;  // null: the server is being taken down
+  int uploads = 0;                       // of files, in progress
+  std::unique_ptr<live::Runner> runner;  // null: the server is shutting down
 
  private:
   void give_controls(Socket* socket);
@@ -60,7 +60,7 @@ class Hub {
   std::string ticket_;
 };
 
-// One count of a connection, for as long as it lives.
+// Counts a connection during its lifetime.
 class Place {
  public:
   explicit Place(Hub& hub) : hub_(&hub) { ++hub.connections; }

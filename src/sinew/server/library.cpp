@@ -17,22 +17,9 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view pictures = "/gallery/";
 
-std::string lower(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-  });
-  return text;
-}
-
-std::string ending(const std::string& name) {
-  return lower(fs::path(name).extension().string());
-}
-
 bool can_be_kept(const std::string& name) {
-  const std::string end = ending(name);
-  const auto& meshes = io::mesh_endings();
-  return end == ".toml" || end == ".face" ||
-         std::find(meshes.begin(), meshes.end(), end) != meshes.end();
+  const std::string end = io::lower_extension(name);
+  return end == ".toml" || end == ".face" || io::is_mesh_name(name);
 }
 
 bool is_plain(const std::string& name) {
@@ -42,9 +29,9 @@ bool is_plain(const std::string& name) {
              std::string::npos;
 }
 
-// A folder that only this user can look into.
+// A folder that only this user can read.
 fs::path make_folder() {
-  // mkdtemp() puts letters of its own in the place of six of these.
+  // mkdtemp() replaces six of these characters.
   std::string path = (fs::temp_directory_path() / "sinew-view-").string() + std::string(6, 'X');
   if (::mkdtemp(path.data()) == nullptr) {
     throw Error(ErrorKind::io, "cannot make a folder for files", "set TMPDIR to one that is yours",

@@ -1,4 +1,4 @@
-// The scenes that a server can open: those that are shipped, and files that its viewers give it.
+// The scenes that a server can open: those that come with Sinew, and files from its viewers.
 #pragma once
 
 #include <filesystem>
@@ -18,28 +18,29 @@ class Library {
   static constexpr std::size_t most_file_bytes = std::size_t{64} << 20;
   static constexpr std::size_t most_bytes = std::size_t{256} << 20;  // of all files
 
-  // `scenes`: the folder of the shipped scenes, with their pictures in "pictures"; may be empty.
-  // Scenes in it that cannot be read are left out.
+  // `scenes`: the folder of Sinew's scenes, with their pictures in "pictures"; may be empty. Scenes
+  // that cannot be read are omitted.
   explicit Library(std::filesystem::path scenes);
-  ~Library();  // removes the files that were given
+  ~Library();  // removes the received files
   Library(const Library&) = delete;
   Library& operator=(const Library&) = delete;
 
-  // As docs/protocol.md says.
+  // See docs/protocol.md.
   std::string gallery() const;
-  // The bytes of "/gallery/NAME.jpg"; nothing where there is no such picture.
+  // The bytes of "/gallery/NAME.jpg"; nothing if there is no such picture.
   std::optional<std::string> picture(std::string_view path) const;
 
-  // Keeps a file for open(), in the place of an earlier one of that name. Throws Error(usage) for a
-  // name that is none or has no ending that can be opened, or too many bytes; Error(io).
+  // Stores a file for open(), replacing an earlier one of that name. Throws Error(usage) for an
+  // invalid name, an unknown extension, or too many bytes; Error(io).
   void keep(const std::string& name, std::string_view bytes);
 
-  // Takes the folder of the files given out of a text: a message names files as their viewer does.
+  // Removes the folder of the received files from a text, so that a message has the viewer's file
+  // names.
   void leave_out_folder(std::string& text) const;
 
-  // Reads what is asked for when it is called, from any thread while the library is there. The
-  // function throws what load_scene and scene_around throw; Error(usage) here where there is no
-  // such scene or file.
+  // Returns a function that reads the requested scene. It may be called on any thread during the
+  // library's lifetime, and throws the errors of load_scene and scene_around. Throws Error(usage)
+  // if there is no such scene or file.
   std::function<Scene()> opener(const Open& open) const;
 
  private:
@@ -50,7 +51,7 @@ class Library {
   };
 
   std::vector<Entry> entries_;
-  std::filesystem::path folder_;             // of the files given; empty: none yet
+  std::filesystem::path folder_;             // of the received files; empty: none yet
   std::map<std::string, std::size_t> kept_;  // sizes by name
 };
 

@@ -22,7 +22,7 @@ static_assert(std::endian::native == std::endian::little, "the protocol is littl
   throw Error(ErrorKind::usage, why, "docs/protocol.md lists the messages");
 }
 
-// The values of one message; every one of them has to be asked for.
+// The values of one message. Every value must be requested; others are errors.
 class Fields {
  public:
   explicit Fields(const nlohmann::json& message) : message_(message) {}
@@ -179,7 +179,7 @@ Json vector(const Vec3& v) {
   return Json::array({v.x(), v.y(), v.z()});
 }
 
-// JSON knows no infinity.
+// JSON has no infinity.
 Json finite_or_null(double v) {
   return std::isfinite(v) ? Json(v) : Json(nullptr);
 }

@@ -1,4 +1,4 @@
-// The messages between the server and the page: docs/protocol.md says what they hold.
+// The messages between the server and the page. docs/protocol.md describes their content.
 #pragma once
 
 #include <cstdint>
@@ -15,19 +15,19 @@ namespace sinew::server {
 inline constexpr std::uint16_t protocol_version = 2;
 inline constexpr std::size_t most_message_bytes = 4096;  // that the server takes
 
-// What only the socket is concerned with.
+// Messages that concern only the socket.
 struct Seen {
-  std::uint64_t frame = 0;  // the page has got this one
+  std::uint64_t frame = 0;  // the page has received this one
 };
 struct TakeControls {};
-// What the server's library is asked for: a scene that is shipped, or a file that was given.
+// A request to the server's library: a scene of Sinew, or a received file.
 struct Open {
   std::string scene, file;  // one of them is empty
 };
 using Request = std::variant<live::Command, Seen, TakeControls, Open>;
 
-// Reads a message of the page. Throws Error(usage) for everything that is no message of this
-// protocol: no JSON, an unknown type or key, a missing or wrong value.
+// Reads a message of the page. Throws Error(usage) for any other text: no JSON, an unknown type or
+// key, a missing or wrong value.
 Request parse_request(std::string_view text);
 
 // Binary messages, little endian.

@@ -1,5 +1,5 @@
-// HTTP by Boost.Beast, which only this file and socket.cpp know. Everything here runs on the thread
-// of Server::run(), but for stop() and Impl::wake().
+// HTTP by Boost.Beast, which only this file and socket.cpp include. Everything here runs on the
+// thread of Server::run(), except stop() and Impl::wake().
 #include "sinew/server/server.h"
 
 #include <fmt/format.h>
@@ -37,7 +37,7 @@ constexpr unsigned most_header_bytes = 8192;
 constexpr std::chrono::seconds upload_timeout(120);
 constexpr int most_uploads = 2;  // at a time
 
-// The page is one file that fetches nothing and talks to nobody but this server.
+// The page is one file that downloads nothing and connects to this server only.
 constexpr const char* content_policy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src 'self' data: blob:; media-src blob:; connect-src 'self'; worker-src blob:; "
@@ -53,13 +53,13 @@ bool wants_socket(const http::request<http::empty_body>& request) {
          beast::iequals(request[http::field::upgrade], "websocket");
 }
 
-// The page; while one works on it, what SINEW_PAGE names is read anew every time.
+// The page. For development, the file that SINEW_PAGE names is read again each time.
 std::string the_page() {
   const char* other = std::getenv("SINEW_PAGE");
   return other == nullptr ? page_html : io::read_file(other);
 }
 
-// A connection that has not (yet) become a WebSocket.
+// A connection that is not (yet) a WebSocket.
 class Visitor : public std::enable_shared_from_this<Visitor> {
  public:
   Visitor(Hub& hub, tcp::socket socket) : hub_(hub), place_(hub), stream_(std::move(socket)) {}
@@ -108,7 +108,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
 
   void upgrade(std::string_view path, std::string_view host) {
     const auto& request = parser_->get();
-    if (buffer_.size() > 0) {  // it would be lost: nobody speaks before the handshake is done
+    if (buffer_.size() > 0) {  // it would be lost: no messages before the end of the handshake
       return refuse(http::status::bad_request, "wait for the handshake");
     }
     if (path != "/live" || !origin_allowed(view(request[http::field::origin]), host)) {
@@ -133,7 +133,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     send(http::status::not_found, "text/plain", "nothing here\n");
   }
 
-  // The simulation's thread makes the file, this one sends it, and holds the connection after that.
+  // The simulation's thread creates the file; this one sends it and then owns the connection.
   void send_state() {
     const auto executor = stream_.get_executor();
     const bool posted = hub_.runner->post(
@@ -187,7 +187,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     uploading_ = false;
   }
 
-  // Closes the connection afterwards: a body may follow that nobody wants to read.
+  // Closes the connection afterwards: a body may follow that is not read.
   void refuse(http::status status, const std::string& why) {
     keep_alive_ = false;
     send(status, "text/plain; charset=utf-8", why + "\n");
@@ -221,7 +221,7 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
   beast::flat_buffer buffer_;
   std::optional<http::request_parser<http::empty_body>> parser_;
   std::optional<http::request_parser<http::string_body>> body_;
-  std::string name_;  // of the file that is being given
+  std::string name_;  // of the file that is being received
   std::optional<http::response<http::string_body>> response_;
   bool keep_alive_ = false, head_ = false, uploading_ = false;
 };
@@ -241,7 +241,7 @@ class Server::Impl {
     hub_.runner = std::make_unique<live::Runner>(scene, [this] { wake(); });
     accept();
   }
-  // The simulation's thread ends first, while what it wakes is there.
+  // The simulation's thread ends first, while the object that it wakes exists.
   ~Impl() { hub_.runner.reset(); }
   Impl(const Impl&) = delete;
   Impl& operator=(const Impl&) = delete;
@@ -270,7 +270,7 @@ class Server::Impl {
   Hub& hub() { return hub_; }
 
  private:
-  // What has not said goodbye after half a second is cut off.
+  // Connections that are not closed after half a second are cut off.
   void wait_for_goodbyes(int looks) {
     if (hub_.connections == 0 || looks == 0) return io_.stop();
     goodbye_.expires_after(std::chrono::milliseconds(20));
@@ -301,7 +301,7 @@ class Server::Impl {
   void accept() {
     acceptor_.async_accept([this](Failure failure, tcp::socket socket) {
       if (failure == net::error::operation_aborted || !acceptor_.is_open()) return;
-      if (failure) {  // such as no file handles left: not to be asked again at once
+      if (failure) {  // for example no file handles left: not to be retried at once
         retry_.expires_after(std::chrono::milliseconds(100));
         retry_.async_wait([this](Failure cancelled) {
           if (!cancelled) accept();
@@ -317,7 +317,7 @@ class Server::Impl {
 
   int most_connections_;
   std::atomic<bool> woken_{false};
-  Hub hub_;  // goes after io_, whose handlers hold the sockets that leave it
+  Hub hub_;  // destroyed after io_, whose handlers hold the sockets that leave it
   net::io_context io_{1};
   tcp::acceptor acceptor_;
   net::steady_timer retry_;

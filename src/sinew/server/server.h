@@ -13,28 +13,28 @@
 namespace sinew::server {
 
 struct Options {
-  std::string host = "127.0.0.1";  // address to listen at
-  unsigned short port = 0;         // 0: any that is free
-  std::string token;               // that every request has to name; empty: none
-  int most_connections = 64;       // more are closed at once
+  std::string host = "127.0.0.1";  // listening address
+  unsigned short port = 0;         // 0: any free port
+  std::string token;               // required in every request; empty: none
+  int most_connections = 64;       // further ones are closed at once
   std::filesystem::path scenes;    // folder of the gallery; empty: it has none
-  bool gallery = false;            // pages begin with the gallery
+  bool gallery = false;            // pages start with the gallery
 };
 
 class Server {
  public:
-  // Builds the scene, then listens. Throws what live::Runner throws; Error(io) where the address or
-  // port cannot be had.
+  // Builds the scene, then listens. Throws the errors of live::Runner; Error(io) if the address or
+  // port is not available.
   Server(const Options& options, const Scene& scene);
   ~Server();
 
   // Serves until stop() is called.
   void run();
-  // From any thread.
+  // May be called on any thread.
   void stop();
 
   unsigned short port() const;
-  // Where the page is: "http://127.0.0.1:8650/".
+  // The address of the page: "http://127.0.0.1:8650/".
   std::string url() const;
   live::Runner& runner();
 

@@ -33,7 +33,7 @@ class BeastSocket final : public Socket, public std::enable_shared_from_this<Bea
     beast::get_lowest_layer(stream_).socket().set_option(tcp::no_delay(true));
     websocket::stream_base::timeout timeout =
         websocket::stream_base::timeout::suggested(beast::role_type::server);
-    timeout.handshake_timeout = std::chrono::seconds(5);  // also of goodbyes
+    timeout.handshake_timeout = std::chrono::seconds(5);  // also for closing
     timeout.idle_timeout = std::chrono::seconds(30);
     timeout.keep_alive_pings = true;
     stream_.set_option(timeout);

@@ -9,7 +9,7 @@
 
 namespace sinew::server {
 
-// Answers the handshake; the socket lives until either side ends it. `hub` has to outlive it.
+// Answers the handshake; the socket lives until either side closes it. `hub` must outlive it.
 void open_socket(Hub& hub, Place place, boost::beast::tcp_stream&& stream,
                  const boost::beast::http::request<boost::beast::http::empty_body>& request);
 

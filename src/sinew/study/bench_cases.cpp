@@ -21,7 +21,7 @@
 namespace sinew::study {
 namespace {
 
-// The beam of scenes/beam.toml. Network: without dashpots, as drag alone brings it to rest.
+// The beam of scenes/beam.toml. Network: without dashpots, because drag alone brings it to rest.
 constexpr const char* beam_text = R"(title = "The clamped beam of the benchmarks"
 duration = 2
 tolerance = 0.1
@@ -45,7 +45,7 @@ std::shared_ptr<PackedForces> packed_of(const Model& model, Precision precision)
   return precision == Precision::single ? std::make_shared<PackedForces>(model) : nullptr;
 }
 
-// A body on its way: forces differ from node to node, as in a run.
+// A body in motion: forces differ from node to node, as in a run.
 State moved(const Model& model, double h, Workspace& workspace) {
   State s = initial_state(model);
   for (int i = 0; i < steps_before; ++i)
@@ -154,7 +154,7 @@ std::vector<std::string> law_of(Family family, const std::vector<std::string>& b
 
 const Model& BenchSubject::model(Family family) {
   if (!model_ || built_ != family) {
-    model_.reset();  // two of a million tets need not be there at once
+    model_.reset();  // two models of a million tets need not exist at once
     model_ = build_model(scene(law_of(family, bodies_, file_.empty())));
     built_ = family;
   }
@@ -260,7 +260,7 @@ std::optional<Timing> BenchSubject::frame(const BenchCase& what, const TimerOpti
   start.state = initial_state(m);
   const Controls controls = initial_controls(m);
   Stepping stepping(run_scene, m, controls, start);
-  // The first frames of a fall are easy for Newton's method: the fourth stands for the others.
+  // The first frames of a fall are easy for Newton's method: the fourth represents the others.
   for (int i = 0; implicit && i < 3; ++i) stepping.advance_frame(controls, start, options.stop);
   TimerOptions single = options;
   single.most_in_batch = 1;

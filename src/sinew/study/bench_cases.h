@@ -29,13 +29,13 @@ struct BenchCase {
   Precision precision = Precision::single;
 
   std::string name() const;            // "network step", "implicit frame"
-  std::string precision_name() const;  // empty where both have a part
+  std::string precision_name() const;  // empty if both take part
 };
 
 // In the order of the table.
 std::vector<BenchCase> bench_cases();
 
-// A mesh to measure on: the scene, which parses its text with more overrides, and its model.
+// A mesh to measure on: its scene, parsed again with further overrides, and its model.
 class BenchSubject {
  public:
   // W(k); a scene file.
@@ -44,7 +44,7 @@ class BenchSubject {
 
   const std::string& name() const { return name_; }
   void release() { model_.reset(); }  // the model's memory
-  // The row of a case, without its bound, on as many threads as now are allowed; nothing where
+  // The row of a case, without its bound, on the currently allowed number of threads; nothing if
   // options.stop was set.
   std::optional<BenchRow> run(const BenchCase& what, const TimerOptions& options);
 

@@ -39,7 +39,7 @@ double multiply_adds(std::size_t rounds) {
   const Lanes d;
   const V factor = hn::Set(d, 0.5f);
   const V one = hn::Set(d, 1.0f);
-  // From different values, or the compiler would see that all chains are one.
+  // Different start values; otherwise the compiler would merge the chains.
   V v0 = hn::Set(d, 0.00f), v1 = hn::Set(d, 0.25f), v2 = hn::Set(d, 0.50f), v3 = hn::Set(d, 0.75f);
   V v4 = hn::Set(d, 1.00f), v5 = hn::Set(d, 1.25f), v6 = hn::Set(d, 1.50f), v7 = hn::Set(d, 1.75f);
   V v8 = hn::Set(d, 2.00f), v9 = hn::Set(d, 2.25f), v10 = hn::Set(d, 2.5f), v11 = hn::Set(d, 3.0f);
@@ -104,7 +104,7 @@ std::string instruction_set() {
 }
 
 double cycles(std::size_t rounds) {
-  // Read at run time, so that no two steps become one.
+  // Read at run time, so that the compiler cannot merge two steps.
   const volatile std::uint64_t odd = 0x9e3779b97f4a7c15, bits = 0x5555555555555555;
   const std::uint64_t k = odd, m = bits;
   std::uint64_t x = 1;

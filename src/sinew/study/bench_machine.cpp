@@ -17,7 +17,7 @@ namespace {
 
 constexpr double KiB = 1024.0, MiB = 1024.0 * KiB, GiB = 1024.0 * MiB;
 
-// "2048K" as sysfs writes it, in bytes; 0 where it cannot be read.
+// "2048K" as sysfs writes it, in bytes; 0 if it cannot be read.
 double read_size(const std::string& path) {
   std::ifstream file(path);
   std::string text;
@@ -55,7 +55,7 @@ double array_bytes(MemoryLevel level, const CacheSizes& caches, int threads) {
   return std::clamp(4.0 * caches.l3, 256.0 * MiB, 1.0 * GiB);
 }
 
-// Calls f(thread) on so many threads at once, the caller's own among them.
+// Calls f(thread) on this many threads at once, including the caller's.
 void on_threads(int threads, const std::function<void(int)>& f) {
   std::vector<std::thread> others;
   for (int t = 1; t < threads; ++t) others.emplace_back(f, t);
@@ -63,7 +63,7 @@ void on_threads(int threads, const std::function<void(int)>& f) {
   for (std::thread& other : others) other.join();
 }
 
-// Best rate [1/s] seen of what `run(thread)` returns the amount of, over all threads.
+// Best rate [1/s] of the amount that `run(thread)` returns, over all threads.
 std::optional<double> rate(int threads, const TimerOptions& options,
                            const std::function<double(int)>& run) {
   std::vector<double> amount(static_cast<std::size_t>(threads));
@@ -76,7 +76,7 @@ std::optional<double> rate(int threads, const TimerOptions& options,
   return sum / time->min;
 }
 
-// With fewer passes than this many bytes, starting threads would be measured.
+// With fewer bytes than this, the start of threads would dominate the measurement.
 constexpr double bytes_a_run = 64.0 * MiB;
 
 std::optional<Bandwidth> measure_bandwidth(double bytes, int threads, const TimerOptions& options) {

@@ -11,7 +11,7 @@ namespace {
 constexpr double mega = 1e6, giga = 1e9;
 constexpr double mebibyte = 1024.0 * 1024.0;
 
-// The version of what to_json writes: a later one may add keys, not change them.
+// The version of the JSON format: a later version may add keys, not change them.
 constexpr int schema = 1;
 
 std::string time_text(double seconds) {

@@ -10,7 +10,7 @@ namespace {
 // Bytes of one item's share of the arrays.
 constexpr double id = 4.0;            // Index
 constexpr double vec = 24.0;          // Vec3 in double precision
-constexpr double number = 8.0;        // in double precision
+constexpr double real = 8.0;          // a number in double precision
 constexpr double four = 16.0;         // Float4, a slot or a padded vector
 constexpr double block = 3.0 * four;  // Block3
 
@@ -53,7 +53,7 @@ Work pass(double items, double bytes, double flops = 0.0) {
   return {items * bytes, items * flops, items * bytes};
 }
 
-// One that a pass before has counted as part of the working set.
+// An array that an earlier pass has counted as part of the working set.
 Work again(double items, double bytes, double flops = 0.0) {
   return {items * bytes, items * flops, 0.0};
 }
@@ -67,7 +67,7 @@ Work single_forces(const Counts& n) {
   return w + pass(n.springs, packed_spring, spring_flops) + pass(n.nodes, four);  // forces
 }
 
-// Positions of nodes that tets or springs look at.
+// Positions of nodes, read by tets or springs.
 Work positions(const Counts& n) {
   return pass(n.nodes, vec);
 }
@@ -86,16 +86,15 @@ Work springs_work(const Model& model) {
   const Counts n = counts_of(model);
   if (n.springs == 0.0) return {};
   return positions(n) + pass(n.nodes, vec) +  // velocities
-         pass(n.springs, 2.0 * id + 3.0 * number + vec, spring_flops);
+         pass(n.springs, 2.0 * id + 3.0 * real + vec, spring_flops);
 }
 
 Work volumes_work(const Model& model) {
   const Counts n = counts_of(model);
   // Geometry; the cells' sums over their tets; pressures of the tets.
-  return positions(n) + pass(n.tets, 4.0 * id + number + 4.0 * vec, plain_volume_flops) +
-         pass(4.0 * n.tets, id + number, 2.0) + again(n.tets, number) +
-         pass(n.cells, 3.0 * number, 3.0) + again(n.tets, number) +
-         pass(n.tets, 5.0 * number + 4.0 * id + 4.0 * number, 20.0);
+  return positions(n) + pass(n.tets, 4.0 * id + real + 4.0 * vec, plain_volume_flops) +
+         pass(4.0 * n.tets, id + real, 2.0) + again(n.tets, real) + pass(n.cells, 3.0 * real, 3.0) +
+         again(n.tets, real) + pass(n.tets, 5.0 * real + 4.0 * id + 4.0 * real, 20.0);
 }
 
 Work forces_work(const Model& model, Precision precision) {
@@ -112,17 +111,17 @@ Work gather_work(const Model& model, Precision precision) {
     return pass(n.network, packed_entry, network_flops) + pass(n.nodes, id + four) +
            pass(n.nodes, four) + pass(n.nodes, vec);
   }
-  return pass(n.network, id + number, network_flops) + again(n.nodes, vec) +
+  return pass(n.network, id + real, network_flops) + again(n.nodes, vec) +
          pass(2.0 * n.springs, id, 3.0) + again(n.springs, vec) + pass(4.0 * n.tets, id, 6.0) +
-         again(n.tets, 4.0 * vec + number) + pass(n.nodes, vec);
+         again(n.tets, 4.0 * vec + real) + pass(n.nodes, vec);
 }
 
 Work update_work(const Model& model) {
   const Counts n = counts_of(model);
   // Force, position and velocity read and written; mass, its inverse and drag. Only springs have
-  // looked at velocities before.
+  // read velocities before.
   const Work velocity = n.springs > 0.0 ? again(n.nodes, vec) : pass(n.nodes, vec);
-  return again(n.nodes, 5.0 * vec) + velocity + pass(n.nodes, 3.0 * number, update_flops);
+  return again(n.nodes, 5.0 * vec) + velocity + pass(n.nodes, 3.0 * real, update_flops);
 }
 
 Work step_work(const Model& model, Precision precision) {

@@ -1,5 +1,5 @@
-// How much a kernel has to do at least: the bytes that it must move and the operations that its
-// equations take. docs/performance.md.
+// The minimum work of a kernel: the bytes that it must move and the operations of its equations.
+// docs/performance.md.
 #pragma once
 
 #include "sinew/model/model.h"
@@ -8,16 +8,16 @@
 
 namespace sinew::study {
 
-// Bytes: every array that a pass over the model reads or writes, once for each pass, as if all that
-// is used twice within a pass stayed in registers or the nearest cache. Flops: additions,
-// multiplications, divisions and roots of the equations, one each.
+// Bytes: every array that a pass over the model reads or writes, once for each pass, as if repeated
+// accesses within a pass hit registers or the nearest cache. Flops: additions, multiplications,
+// divisions and roots of the equations, one each.
 struct Work {
   double bytes = 0.0;
   double flops = 0.0;
   double working_set = 0.0;  // bytes of the arrays, each once
 };
 Work operator+(const Work& a, const Work& b);
-Work operator*(double times, const Work& once);  // the same arrays, so many times
+Work operator*(double times, const Work& once);  // the same arrays, this many times
 
 // The parts of a step of Verlet; the counts are those of the arrays in forces/packed.h (single),
 // model.h and workspace.h (double).
@@ -32,7 +32,7 @@ Work volumes_work(const Model& model);                      // compute_volume_pr
 Work product_work(const Model& model);    // a product with the tangent
 Work iteration_work(const Model& model);  // with the vectors and the diagonal of the preconditioner
 
-// What keeps work from being done faster, and how long it takes at that bound.
+// The limiting resource of some work, and its time at that limit.
 struct Bound {
   const char* by = "";   // "L2", "L3", "memory": where the working set fits; "FMA"
   double seconds = 0.0;  // the longer of bytes / bandwidth and flops / rate

@@ -129,7 +129,7 @@ std::vector<Choice> read_choices(const CaseTable& root, const char* key) {
 
 Quantity read_quantity(const DocValue& item) {
   const CaseTable t(item, "[[quantity]]",
-                {"name", "kind", "of", "axis", "mode", "unit", "scale", "limit"});
+                    {"name", "kind", "of", "axis", "mode", "unit", "scale", "limit"});
   Quantity q;
   q.name = t.text("name", true);
   const std::string kind = t.text("kind", true);

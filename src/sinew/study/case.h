@@ -1,5 +1,5 @@
-// A validation case: a folder with scene.toml, case.toml, reference.toml. docs/validation.md says
-// what stands in them.
+// A validation case: a folder with scene.toml, case.toml, reference.toml. docs/validation.md
+// describes these files.
 #pragma once
 
 #include <filesystem>
@@ -11,7 +11,7 @@
 
 namespace sinew::study {
 
-// What is measured on the rest state, or at the end of the run (measure.h).
+// Quantities of the rest state, or of the end of the run (measure.h).
 enum class Kind {
   probe,      // displacement of a probe along `axis` [m]
   radial,     // mean displacement of a probe's nodes away from the origin [m]
@@ -19,14 +19,14 @@ enum class Kind {
   force,      // of a pin on the body, along `axis` [N]
   torque,     // of a pin on the body about the mean of its nodes, about `axis` [N m]
   stress,     // mean first Piola stress from the forces of all pins, `axis` row and column [Pa]
-  patch,      // largest distance from where the path of a pin takes every node, as a share of its
-              // largest move [-]
+  patch,      // largest distance of a node from its place on the path of a pin, as a share of the
+              // largest displacement [-]
   frequency,  // of a mode of small vibrations about the rest positions [Hz]
   volume,     // of all bodies over that at rest [-]
   lowest,     // smallest displacement of a probe along `axis` over the frames [m]
   obstacle,   // force of the bodies on an obstacle along `axis` [N]
   contact_time,  // from the start to the last frame with a node on the ground [s]
-  sink,          // how far the centre of a body's mass goes against `axis`, at most [m]
+  sink,          // maximum displacement of the centre of a body's mass against `axis` [m]
   leave,         // velocity of the centre of a body's mass along `axis` in that last frame [m/s]
 };
 
@@ -37,12 +37,12 @@ struct Quantity {
   std::string axis;  // "x"; stress: "xy"; frequency: along which the mode moves most, or empty
   int mode = 0;      // frequency: number from 1, of those along `axis`
   std::string unit;
-  double scale = 0.0;         // what an error is a share of; 0: the reference
-  std::vector<double> limit;  // largest error of the network law, mesh by mesh; the last goes on
+  double scale = 0.0;         // denominator of a relative error; 0: the reference
+  std::vector<double> limit;  // largest error of the network law, by mesh; the last one repeats
   Location where;
 };
 
-// One way to set the scene: a variant of the material or load, or a mesh.
+// A set of overrides: a variant of the material or load, or a mesh.
 struct Choice {
   std::string name;
   std::vector<std::string> set;  // overrides, as of --set
@@ -54,7 +54,7 @@ struct Choice {
 struct Reference {
   std::string variant, quantity;
   double value = 0.0;
-  double error = 0.0;  // estimate of the reference's own
+  double error = 0.0;  // estimated error of the reference
 };
 
 struct Case {
@@ -62,7 +62,7 @@ struct Case {
   std::string title;  // one line
   std::filesystem::path folder;
   std::vector<std::string> laws;  // names, law.h
-  std::vector<Choice> variants;   // one with an empty name and no `set` where the file has none
+  std::vector<Choice> variants;   // one with an empty name and no `set` if the file has none
   std::vector<Choice> meshes;     // from coarse to fine; like variants
   std::vector<Quantity> quantities;
   std::string source;  // of the reference
@@ -72,15 +72,15 @@ struct Case {
   const Reference* reference(const std::string& variant, const std::string& quantity) const;
 };
 
-// Largest error allowed for a quantity of a variant on the mesh of this number; absent: any.
+// Largest permitted error of a quantity of a variant on the mesh of this number; absent: any.
 std::optional<double> limit_of(const Quantity& quantity, const Choice& variant, std::size_t mesh);
 
-// Names of the cases in a folder, sorted. Error(io) where there is no such folder, Error(input)
-// where it has no case.
+// Names of the cases in a folder, sorted. Error(io) if there is no such folder, Error(input)
+// if it has no case.
 std::vector<std::string> case_names(const std::filesystem::path& folder);
 
 // Reads a case and its reference. Error(usage) for a name that the folder does not have, with the
-// nearest one; Error(input) at the place of a mistake; Error(io) where a file is missing.
+// nearest one; Error(input) at the place of a mistake; Error(io) if a file is missing.
 Case load_case(const std::filesystem::path& folder, const std::string& name);
 
 }  // namespace sinew::study

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "sinew/report/json.h"
 #include "sinew/report/table.h"
 #include "sinew/report/text.h"
 #include "sinew/study/measure.h"
@@ -14,7 +15,7 @@ namespace sinew::study {
 
 namespace {
 
-// Changes below this share of the displacement are the solver's, not the mesh's.
+// Changes below this share of the displacement come from the solver, not from the mesh.
 constexpr double noise = 1e-5;
 
 std::vector<std::string> refined(const Scene& scene, std::vector<std::string> set, int level) {
@@ -46,10 +47,6 @@ void add_warnings(ConvergeResult& result) {
     if (level.inverted_tets > 0)
       result.warnings.push_back(
           fmt::format("{} tets are inverted at level {}", level.inverted_tets, level.refine));
-}
-
-nlohmann::ordered_json json_of(const Vec3& v) {
-  return {v.x(), v.y(), v.z()};
 }
 
 std::string share_text(double share) {
@@ -166,11 +163,10 @@ nlohmann::ordered_json to_json(const ConvergeResult& r) {
   nlohmann::ordered_json probes = nlohmann::ordered_json::object();
   for (const Trend& t : r.trends) {
     nlohmann::ordered_json displacement = nlohmann::ordered_json::array();
-    for (const Vec3& u : t.displacement) displacement.push_back(json_of(u));
+    for (const Vec3& u : t.displacement) displacement.push_back(report::to_json(u));
     probes[t.probe] = {{"displacement", displacement},
-                       {"order", std::isfinite(t.order) ? nlohmann::ordered_json(t.order)
-                                                        : nlohmann::ordered_json()},
-                       {"extrapolated", json_of(t.extrapolated)},
+                       {"order", report::finite_or_null(t.order)},
+                       {"extrapolated", report::to_json(t.extrapolated)},
                        {"error", t.error},
                        {"converges", t.converges}};
   }

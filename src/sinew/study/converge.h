@@ -39,7 +39,7 @@ struct Trend {
 struct ConvergeResult {
   std::string scene, title;
   std::vector<MeshLevel> levels;  // those that ran
-  std::vector<Trend> trends;  // (probes)
+  std::vector<Trend> trends;      // (probes)
   bool stopped = false;
   std::vector<std::string> warnings;
 };

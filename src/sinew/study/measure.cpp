@@ -100,7 +100,7 @@ double Experiment::volume_ratio() const {
   return now / rest;
 }
 
-// The pin balances what the material pulls: compute_forces leaves just that on pinned nodes.
+// The pin balances the pull of the material: compute_forces leaves exactly that on pinned nodes.
 Vec3 Experiment::pin_force(const Pin& pin) const {
   Vec3 sum = Vec3::Zero();
   for (const Index i : pin.nodes) sum -= force_[uz(i)];
@@ -116,8 +116,8 @@ Vec3 Experiment::pin_torque(const Pin& pin) const {
   return sum;
 }
 
-// Mean of P over the body: the divergence theorem on P N = forces of the pins, where nothing else
-// acts from outside.
+// Mean of P over the body: the divergence theorem on P N = forces of the pins, without other
+// external forces.
 double Experiment::stress(int row, int column) const {
   double volume = 0.0;
   for (const Body& body : model_.bodies) volume += body.rest_volume;

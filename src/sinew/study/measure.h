@@ -1,4 +1,4 @@
-// One computation of a study: a scene brought to rest, or run to its end, and what is measured.
+// One computation of a study: a scene brought to rest, or run to its end, and its measurements.
 #pragma once
 
 #include <atomic>
@@ -17,13 +17,13 @@ namespace sinew::study {
 
 class Experiment {
  public:
-  // Builds the scene's model; the scene has to outlive the experiment. Throws Error(input).
+  // Builds the scene's model; the scene must outlive the experiment. Throws Error(input).
   explicit Experiment(const Scene& scene);
 
-  // Runs to the end. False: `stop` was set before. Throws Error, see Stepping.
+  // Runs to the end. Returns false if `stop` was set before. Throws Error, see Stepping.
   bool run(const std::atomic<bool>* stop, const std::function<void(double)>& on_share = {});
 
-  // After run(). Throws Error(input) where the scene has no probe or pin of the name.
+  // After run(). Throws Error(input) if the scene has no probe or pin of that name.
   double measure(const Quantity& quantity);
 
   const Model& model() const { return model_; }
@@ -56,7 +56,7 @@ class Experiment {
   std::vector<Flight> flight_;       // (bodies)
   double contact_time_ = 0.0;        // the end of that frame [s]
   std::vector<double> omega_;        // [rad/s] of the modes found
-  std::vector<Vec3> participation_;  // how much of the mass a mode moves along each axis [-]
+  std::vector<Vec3> participation_;  // share of the mass that a mode moves along each axis [-]
 };
 
 }  // namespace sinew::study

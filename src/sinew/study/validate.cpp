@@ -91,7 +91,7 @@ bool run_one(const Plan& plan, const SuiteOptions& options, CaseResult& result) 
     trial.residual = experiment->state().residual;
     trial.seconds = experiment->seconds();
   } catch (const Error& error) {
-    // A law of springs may not have a material that the others have.
+    // A law of springs may be unable to represent a material.
     const bool cannot = plan.law->classic && error.kind() == ErrorKind::input;
     if (error.kind() != ErrorKind::diverged && !cannot) throw;
     trial.failure = error.message();
@@ -126,7 +126,7 @@ std::vector<double> errors_of(const CaseResult& result, const std::string& law, 
   return errors;
 }
 
-// Whether network and FEM both get this value of the coarsest mesh to rounding.
+// Whether both network and FEM have this value on the coarsest mesh to rounding.
 bool both_exact(const CaseResult& result, const Value& value) {
   const Trial& trial = result.trials[value.trial];
   int exact_ones = 0;

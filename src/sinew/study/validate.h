@@ -1,4 +1,5 @@
-// The validation suite: cases on the laws and meshes that they name, against reference values.
+// The validation suite: runs cases with their laws and meshes and compares them with reference
+// values.
 #pragma once
 
 #include <atomic>
@@ -36,19 +37,19 @@ struct Trial {
   double volume_ratio = 1.0;
   double residual = 0.0;  // static, see StaticReport
   double seconds = 0.0;
-  std::string failure;  // why there is no result; empty: there is one
+  std::string failure;  // reason for a missing result; empty: there is one
   bool holds() const;   // false: the network law failed, or left a tet inverted
 };
 
 struct Value {
   std::size_t trial = 0;  // index into CaseResult::trials
   std::string quantity;
-  double value = 0.0;  // NaN where the trial failed
+  double value = 0.0;  // NaN if the trial failed
   double reference = 0.0;
   double reference_error = 0.0;
   double error = 0.0;           // (value - reference) / scale, the scale |reference| unless given
   std::optional<double> limit;  // of |error|
-  bool holds = true;            // false: over the limit, or no result where there is a limit
+  bool holds = true;            // false: over the limit, or no result although there is a limit
 };
 
 struct CaseResult {
@@ -64,17 +65,17 @@ struct SuiteResult {
   bool holds() const;  // every threshold
 };
 
-// Runs the cases one experiment after the other. What one of them throws becomes its `failure`;
+// Runs the cases one experiment after the other. An error of an experiment becomes its `failure`;
 // mistakes in a case (Error(input) with the place in case.toml or scene.toml) are thrown.
 SuiteResult run_suite(const std::vector<Case>& cases, const SuiteOptions& options);
 
-// Median |error| of a law's values that are there: of one case on one mesh, or, over cases, on the
-// coarsest mesh of each. NaN where there are none. Values that network and FEM both get to 1e-6
-// (patch tests) are left out of the second: nothing is compared there.
+// Median |error| of a law's available values: of one case on one mesh, or, over cases, on the
+// coarsest mesh of each. NaN if there are none. The second omits values that both network and FEM
+// have to 1e-6 (patch tests), because they compare nothing.
 double median_error(const CaseResult& result, const std::string& law, std::size_t mesh);
 double median_error_coarsest(const SuiteResult& result, const std::string& law);
 
-// The tables of the terminal, the page validation.html, the object of validation.json.
+// The tables for the terminal, the page validation.html, the object of validation.json.
 std::string to_text(const SuiteResult& result);
 std::string to_html(const SuiteResult& result);
 nlohmann::ordered_json to_json(const SuiteResult& result);

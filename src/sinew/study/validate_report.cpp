@@ -1,4 +1,4 @@
-// What the validation suite found: as text, as a page, as JSON.
+// The results of the validation suite: as text, as a page, as JSON.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "sinew/report/html.h"
+#include "sinew/report/json.h"
 #include "sinew/report/table.h"
 #include "sinew/report/text.h"
 #include "sinew/scene/laws.h"
@@ -28,7 +29,7 @@ struct Column {
   std::size_t mesh;
 };
 
-// Law by law, from coarse to fine: those that have a trial.
+// Law by law, from coarse to fine: the columns with a trial.
 std::vector<Column> columns_of(const CaseResult& result) {
   std::vector<Column> columns;
   for (const LawChoice& law : law_choices())
@@ -76,7 +77,7 @@ std::string magnitude_text(double error) {
   return std::isnan(error) ? "-" : fmt::format("{:.{}f} %", 100 * error, error < 0.1 ? 2 : 1);
 }
 
-// One row for every variant and quantity; with `values`, the values too and not the errors alone.
+// One row for every variant and quantity; with `values`, the values as well as the errors.
 Table errors_table(const CaseResult& result, bool values) {
   const Case& c = result.definition;
   const std::vector<Column> columns = columns_of(result);
@@ -143,7 +144,7 @@ Table trials_table(const CaseResult& result) {
   return table;
 }
 
-// One row for every case: what the laws are off by on its coarsest mesh.
+// One row for every case: the errors of the laws on its coarsest mesh.
 Table summary_table(const SuiteResult& result) {
   Table table;
   table.columns = {{"case", Align::left}, {"tets"}};
@@ -224,7 +225,7 @@ report::Plot convergence_plot(const CaseResult& result) {
   return plot;
 }
 
-// How the error of the values is spread over variants, on the coarsest mesh.
+// The error of the values for each variant, on the coarsest mesh.
 report::BarChart variants_chart(const CaseResult& result) {
   report::BarChart chart;
   chart.title = "by variant, coarsest mesh";
@@ -246,10 +247,6 @@ report::BarChart variants_chart(const CaseResult& result) {
   }
   for (const Choice& variant : result.definition.variants) chart.groups.push_back(variant.name);
   return chart;
-}
-
-nlohmann::ordered_json number(double x) {
-  return std::isfinite(x) ? nlohmann::ordered_json(x) : nlohmann::ordered_json();
 }
 
 }  // namespace
@@ -296,12 +293,13 @@ nlohmann::ordered_json to_json(const SuiteResult& result) {
       nlohmann::ordered_json values = nlohmann::ordered_json::object();
       for (const Value& v : r.values) {
         if (v.trial != t) continue;
-        values[v.quantity] = {{"value", number(v.value)},
-                              {"reference", number(v.reference)},
-                              {"reference_error", number(v.reference_error)},
-                              {"error", number(v.error)},
-                              {"limit", v.limit ? number(*v.limit) : nlohmann::ordered_json()},
-                              {"holds", v.holds}};
+        values[v.quantity] = {
+            {"value", report::finite_or_null(v.value)},
+            {"reference", report::finite_or_null(v.reference)},
+            {"reference_error", report::finite_or_null(v.reference_error)},
+            {"error", report::finite_or_null(v.error)},
+            {"limit", v.limit ? report::finite_or_null(*v.limit) : nlohmann::ordered_json()},
+            {"holds", v.holds}};
       }
       trials.push_back({{"law", trial.law},
                         {"variant", trial.variant},
@@ -310,7 +308,7 @@ nlohmann::ordered_json to_json(const SuiteResult& result) {
                         {"tets", trial.tets},
                         {"inverted_tets", trial.inverted_tets},
                         {"volume_ratio", trial.volume_ratio},
-                        {"residual", number(trial.residual)},
+                        {"residual", report::finite_or_null(trial.residual)},
                         {"seconds", trial.seconds},
                         {"failure", trial.failure},
                         {"values", values}});
@@ -320,7 +318,7 @@ nlohmann::ordered_json to_json(const SuiteResult& result) {
   }
   nlohmann::ordered_json medians = nlohmann::ordered_json::object();
   for (const LawChoice& law : law_choices())
-    medians[law.name] = number(median_error_coarsest(result, law.name));
+    medians[law.name] = report::finite_or_null(median_error_coarsest(result, law.name));
   return {{"version", SINEW_VERSION},  {"holds", result.holds()},    {"stopped", result.stopped},
           {"seconds", result.seconds}, {"median_coarsest", medians}, {"cases", cases}};
 }

@@ -1,4 +1,4 @@
-#include "sinew/mesh/fans.h"
+#include "sinew/mesh/edge_rings.h"
 
 #include <algorithm>
 #include <array>
@@ -78,17 +78,17 @@ class Chains {
 
 }  // namespace
 
-Fan Fan::split_last() {
-  Fan last{axis, {ring[ring.size() - 2], ring.back()}, {tets.back()}};
-  ring.pop_back();
+EdgeRing EdgeRing::split_last() {
+  EdgeRing last{axis, {nodes[nodes.size() - 2], nodes.back()}, {tets.back()}};
+  nodes.pop_back();
   tets.pop_back();
   return last;
 }
 
-std::vector<Fan> cut_into_fans(std::span<const Tet> tets, std::span<const Index> chosen,
-                               std::span<const int> key, std::size_t longest) {
+std::vector<EdgeRing> cut_into_edge_rings(std::span<const Tet> tets, std::span<const Index> chosen,
+                                          std::span<const int> key, std::size_t longest) {
   const std::vector<View> views = views_of(tets, chosen);
-  std::vector<std::span<const View>> stars;  // those that may still give a fan
+  std::vector<std::span<const View>> stars;  // those that may still give a ring
   for (std::size_t begin = 0; begin < views.size();) {
     std::size_t end = begin;
     while (end < views.size() && views[end].axis == views[begin].axis) ++end;
@@ -96,25 +96,25 @@ std::vector<Fan> cut_into_fans(std::span<const Tet> tets, std::span<const Index>
     begin = end;
   }
   std::vector<char> taken(chosen.size(), 0);
-  std::vector<Fan> fans;
+  std::vector<EdgeRing> rings;
   for (std::size_t length = longest; length > 0; --length) {
     std::vector<std::span<const View>> left;
     for (const auto& star : stars) {
       std::vector<std::size_t> chain = Chains(star, chosen, key, taken).find(length);
       for (; chain.size() == length; chain = Chains(star, chosen, key, taken).find(length)) {
-        Fan fan{star.front().axis, {star[chain.front()].from}, {}};
+        EdgeRing ring{star.front().axis, {star[chain.front()].from}, {}};
         for (const std::size_t k : chain) {
           taken[star[k].tet] = 1;
-          fan.ring.push_back(star[k].to);
-          fan.tets.push_back(chosen[star[k].tet]);
+          ring.nodes.push_back(star[k].to);
+          ring.tets.push_back(chosen[star[k].tet]);
         }
-        fans.push_back(std::move(fan));
+        rings.push_back(std::move(ring));
       }
       if (!chain.empty()) left.push_back(star);
     }
     stars = std::move(left);
   }
-  return fans;
+  return rings;
 }
 
 }  // namespace sinew
