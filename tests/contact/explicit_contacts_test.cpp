@@ -24,6 +24,9 @@ struct Standing {
     floor.center = Vec3(0, -0.05, 0);
     floor.friction = friction;
     add_obstacle(model, floor);
+    floor.name = "a wall far away";  // with one plane alone contacts share no nodes
+    floor.center = Vec3(0, -9, 0);
+    add_obstacle(model, floor);
     build_skin(model);
     finish(model);
     state = initial_state(model);

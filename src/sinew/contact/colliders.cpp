@@ -13,7 +13,6 @@
 namespace sinew {
 namespace {
 
-
 // ---- the shape of an obstacle, in its own frame ----
 
 SurfacePoint surface_of(const Obstacle& o, const Vec3& q) {
@@ -203,7 +202,7 @@ void add_triangles(const Model& model, const Moving& m, std::size_t body,
 
 // Boxes around the ways of the bodies' surfaces.
 std::vector<Eigen::AlignedBox3d> boxes_of_bodies(const Model& model, const std::vector<Vec3>& from,
-                                 const std::vector<Vec3>& to) {
+                                                 const std::vector<Vec3>& to) {
   std::vector<Eigen::AlignedBox3d> boxes(model.bodies.size());
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     const Range own = model.skin.body_nodes[b];

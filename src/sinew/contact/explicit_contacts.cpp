@@ -48,6 +48,8 @@ bool ExplicitContacts::any(const Model& model) {
 // there. let_go() leads them back.
 bool ExplicitContacts::hold(const std::vector<Vec3>& before, const std::vector<Vec3>& force,
                             double h, State& state) {
+  holds_.clear();
+  if (finder_.explicit_reach() == 0.0) return false;  // each contact is on its own
   warm_start(state, force, sum_, holds_);
   if (holds_.empty()) return false;
   const double kick = 0.5 * (state.last_step + h);
@@ -69,12 +71,12 @@ void ExplicitContacts::let_go(State& state) {
 
 void ExplicitContacts::find(const std::vector<Vec3>& before, const std::vector<Vec3>& force,
                             double h, State& state) {
-  // Those that nearly touch take part: what the others push them into counts at once.
   const double reach = finder_.explicit_reach();
   const auto find_shapes = [&] {
-    contacts_.clear();
-    if (model_.ground) find_ground_contacts(model_, state.position, reach, contacts_);
     finder_.find_shapes(before, state.position, state.time, state.time + h, reach, contacts_);
+    if (!model_.ground) return;
+    find_ground_contacts(model_, state.position, reach, contacts_);
+    std::sort(contacts_.begin(), contacts_.end(), comes_before);
   };
   const auto find_surfaces = [&] {
     finder_.find_surfaces(before, state.position, reach, surfaces_);

@@ -10,6 +10,18 @@
 namespace sinew {
 namespace {
 
+// Whether contacts can share nodes: not where one plane is all that can be touched.
+bool may_share_nodes(const Model& model) {
+  if (!model.surface.triangles.empty()) return true;
+  Index planes = model.ground ? 1 : 0;
+  for (const Obstacle& o : model.obstacles) {
+    if (!o.hard()) continue;
+    if (o.shape != ObstacleShape::plane) return true;
+    ++planes;
+  }
+  return planes > 1;
+}
+
 // Of the size of a mean tet: far more than what a step at rest moves, far less than what is seen.
 constexpr double reach_share = 1e-3;
 
@@ -19,7 +31,7 @@ ContactFinder::ContactFinder(const Model& model) : model_(model) {
   const double mean_volume =
       std::accumulate(model.rest_volume.begin(), model.rest_volume.end(), 0.0) /
       std::max(1.0, static_cast<double>(model.tet_count()));
-  explicit_reach_ = reach_share * std::cbrt(mean_volume);
+  if (may_share_nodes(model)) explicit_reach_ = reach_share * std::cbrt(mean_volume);
   has_rigid_surfaces_ = model.surface.owner_count() > model.surface.body_count;
   if (!model.surface.triangles.empty()) surfaces_ = std::make_unique<SurfaceContacts>(model);
 }

@@ -20,7 +20,8 @@ class ContactFinder {
   // Whether the model has anything but the ground that can touch.
   static bool anything_to_find(const Model& model);
 
-  // The gap below which contacts take part in an explicit step [m].
+  // The gap below which contacts take part in an explicit step [m]: those that nearly touch count
+  // at once where others push them in. 0 where no contact can share a node with another.
   double explicit_reach() const { return explicit_reach_; }
 
   // Contacts of a step from positions `from` at time t0 to `to` at time t1 (nodes): places whose

@@ -21,7 +21,8 @@ struct SurfacePoint {
   Vec3 anchor = nearest;        // [m] on its tangent plane there, from where gaps are measured
 };
 
-// The half-space y <= 0. Gaps are measured from its origin, so that a node at rest does not move it.
+// The half-space y <= 0. Gaps are measured from its origin, so that a node at rest does not move
+// it.
 inline SurfacePoint plane_surface(const Vec3& q) {
   return {q.y(), Vec3::UnitY(), Vec3(q.x(), 0.0, q.z()), Vec3::Zero()};
 }
