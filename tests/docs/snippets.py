@@ -1,19 +1,19 @@
 """The documentation's own commands, scenes, code and links are tests.
 
     snippets.py run      runs the fenced blocks of README.md, CONTRIBUTING.md and docs/**/*.md
-    snippets.py links    checks that relative links and their anchors exist
+    snippets.py links    checks that relative links and their anchors lead somewhere
 
-The first line of a block decides its treatment:
+What happens to a block follows from its first line:
 
-    ```sh, ```bash       every line is run by bash, and every command must succeed
+    ```sh, ```bash       every line is run by bash, and every command has to succeed
     ```console           the lines that start with "$ " are run; the rest shows output
-    ```toml              a scene that must run, if the first line is a comment "# scene ..."
-    ```cpp test          must compile against the library
-    anything else        is ignored
+    ```toml              a scene that has to run, when the first line is a comment "# scene ..."
+    ```cpp test          has to compile against the library
+    anything else        is left alone
 
-An HTML comment `<!-- test: skip (why) -->` on the line above a block skips it.
-The blocks of one page run in order in one scratch copy of the repository, so a later block can use the
-results of an earlier one. `sinew` is on PATH there; `./dev run ...` and `./dev build` use the
+An HTML comment `<!-- test: skip (why) -->` on the line above a block leaves it alone too.
+The blocks of one page run in order in one scratch copy of the repository, so that a later one can
+use what an earlier one made. `sinew` is on PATH there; `./dev run ...` and `./dev build` use the
 binary under test, and no other command of ./dev is run from a page. Environment: SINEW_BIN.
 """
 
@@ -53,7 +53,7 @@ class Block:
         self.skipped = skipped
 
     def script(self):
-        """The shell script in this block, or None."""
+        """The shell script in this block; None when it is none."""
         if self.tag in ("sh", "bash"):
             return self.text
         if self.tag != "console":
@@ -161,7 +161,7 @@ class Scratch:
         self.env = dict(os.environ, PATH=f"{bin_folder}:/usr/bin:{os.environ['PATH']}")
 
     def run(self, *command):
-        """None if the command succeeds, otherwise its output."""
+        """None when the command succeeds, else what it printed."""
         try:
             done = subprocess.run(command, cwd=self.root, env=self.env, text=True,
                                   stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -171,7 +171,7 @@ class Scratch:
         return None if done.returncode == 0 else f"{done.stdout}exit code {done.returncode}"
 
     def run_block(self, block):
-        """(whether the block was tested, None or the error)"""
+        """(whether the block was tested, None or what went wrong)"""
         script = block.script()
         if script is not None:
             return True, self.run("bash", "-euo", "pipefail", "-c", script)
