@@ -9,7 +9,7 @@
 #include "sinew/base/hash.h"
 #include "sinew/base/parallel.h"
 #include "sinew/base/random.h"
-#include "sinew/contact/find.h"
+#include "sinew/contact/explicit_contacts.h"
 #include "sinew/contact/ground.h"
 #include "sinew/contact/respond.h"
 #include "sinew/contact/surfaces.h"
@@ -28,7 +28,7 @@ void report(benchmark::State& state, const SurfaceContacts& contacts,
             const std::vector<Contact>& found) {
   Hash h;
   for (const Contact& c : found) {
-    h.value(c.key);
+    h.value(c.id);
     h.value(c.gap);
   }
   state.SetLabel("contacts " + hex(h.digest()));
@@ -94,10 +94,12 @@ void AnswerToLyingBeams(benchmark::State& state) {
     s.half_velocity[i] += (h * model.inverse_mass[i]) * workspace.force[i];
     s.position[i] += h * s.half_velocity[i];
   }
-  const double reach = workspace.contacts->explicit_reach();
+  ContactFinder& finder = workspace.contacts->finder();
+  const double reach = finder.explicit_reach();
   std::vector<Contact> found;
+  finder.find(before, s.position, s.time, s.time + h, reach, found);
   find_ground_contacts(model, s.position, reach, found);
-  workspace.contacts->find(before, s.position, s.time, s.time + h, reach, found);
+  std::sort(found.begin(), found.end(), comes_before);
   if (state.range(1) == 0) s.reactions.contacts.clear();
   ContactScratch scratch;
   ContactReport answer;

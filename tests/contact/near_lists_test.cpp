@@ -57,14 +57,14 @@ std::vector<Contact> all_pairs(const Model& model, const Moves& moves) {
       }
     }
   }
-  std::sort(found.begin(), found.end(), [](auto& p, auto& q) { return p.key < q.key; });
+  std::sort(found.begin(), found.end(), [](auto& p, auto& q) { return p.id < q.id; });
   return found;
 }
 
 void expect_same(const std::vector<Contact>& a, const std::vector<Contact>& b) {
   ASSERT_EQ(a.size(), b.size());
   for (std::size_t i = 0; i < a.size(); ++i) {
-    EXPECT_EQ(a[i].key, b[i].key);
+    EXPECT_EQ(a[i].id, b[i].id);
     EXPECT_EQ(a[i].node, b[i].node);
     EXPECT_EQ(a[i].weight, b[i].weight);
     EXPECT_EQ(a[i].normal, b[i].normal);

@@ -145,7 +145,7 @@ TEST(Respond, CollidersThatMoveDoWorkAndFeelTheForce) {
   c.count = 1;
   c.way = Vec3(0, 3.0 * h, 0);  // a piston at 3 m/s
   c.anchor = c.way;
-  c.obstacle = 0;
+  c.id.owner = 0;
   const ContactReport report = m.step({c});
   EXPECT_NEAR(m.state.half_velocity[0].y(), 3.0, 1e-12);
   EXPECT_NEAR(m.state.position[0].y(), 3.0 * h, 1e-15);
@@ -192,6 +192,8 @@ TEST(Respond, PinnedNodesStay) {
   EXPECT_EQ(m.step({node_on_triangle(0.5, 0.0)}).contacts, 0);
 }
 
+constexpr ContactId lying = {ContactKind::node_shape, -1, 0, -1};
+
 // A mass of 2 kg that lies on a plane, pulled aside by half its weight.
 Masses lying_mass() {
   Masses m({Vec3(0, 0, 0)}, {Vec3(0, 0, 0)}, {2.0});
@@ -199,25 +201,25 @@ Masses lying_mass() {
   return m;
 }
 
-Contact mass_on_plane(double friction, std::uint64_t key) {
+Contact mass_on_plane(double friction, const ContactId& id) {
   Contact c;
   c.node[0] = 0;
   c.weight[0] = 1.0;
   c.count = 1;
   c.friction = friction;
-  c.key = key;
+  c.id = id;
   return c;
 }
 
 TEST(Respond, BeginsWithWhatItPushedWithInTheStepBefore) {
   Masses m = lying_mass();
-  EXPECT_GT(m.step({mass_on_plane(0.6, 3)}).sweeps, 1);
+  EXPECT_GT(m.step({mass_on_plane(0.6, lying)}).sweeps, 1);
   for (int i = 0; i < 3; ++i) {
     ASSERT_EQ(m.state.reactions.contacts.size(), 1U);
     const ContactPush& p = m.state.reactions.contacts[0];
-    EXPECT_EQ(p.key, 3U);
+    EXPECT_EQ(p.id, lying);
     EXPECT_LT((p.push - Vec3(-10.0, 20.0, 0.0)).norm(), 1e-9);  // also after a first half-step
-    EXPECT_EQ(m.step({mass_on_plane(0.6, 3)}).sweeps, 1);
+    EXPECT_EQ(m.step({mass_on_plane(0.6, lying)}).sweeps, 1);
     EXPECT_LT(m.state.half_velocity[0].norm(), 1e-12);
   }
   EXPECT_EQ(m.step({}).contacts, 0);
@@ -226,13 +228,13 @@ TEST(Respond, BeginsWithWhatItPushedWithInTheStepBefore) {
 
 TEST(Respond, ANodeThatGoesOnToTheNextTriangleKeepsItsPush) {
   Masses m = lying_mass();
-  const std::uint64_t slot = std::uint64_t{5} << 31;
-  m.step({mass_on_plane(0.6, slot | 7)});
-  EXPECT_EQ(m.step({mass_on_plane(0.6, slot | 9)}).sweeps, 1);
-  EXPECT_EQ(m.state.reactions.contacts.at(0).key, slot | 9);
-  Contact other = mass_on_plane(0.6, slot | 9);
-  other.obstacle = 0;  // something else
-  EXPECT_GT(m.step({other}).sweeps, 1);
+  const auto on = [](Index body, Index triangle) {
+    return mass_on_plane(0.6, {ContactKind::node_triangle, body, 5, triangle});
+  };
+  m.step({on(1, 7)});
+  EXPECT_EQ(m.step({on(1, 9)}).sweeps, 1);
+  EXPECT_EQ(m.state.reactions.contacts.at(0).id, on(1, 9).id);
+  EXPECT_GT(m.step({on(2, 9)}).sweeps, 1);  // something else
 }
 
 TEST(Respond, FrictionsConeHoldsWhateverItBeginsWith) {
@@ -241,13 +243,12 @@ TEST(Respond, FrictionsConeHoldsWhateverItBeginsWith) {
     Masses m = lying_mass();
     m.state.last_step = h;
     ContactPush p;
-    p.key = 3;
+    p.id = lying;
     p.node[0] = 0;
     p.weight[0] = 1.0;
-    p.count = 1;
     p.push = stale;
     m.state.reactions.contacts = {p};
-    m.step({mass_on_plane(0.3, 3)});
+    m.step({mass_on_plane(0.3, lying)});
     const Vec3 impulse = 2.0 * m.state.half_velocity[0] - h * m.force[0];
     EXPECT_NEAR(impulse.y(), 20.0 * h, 1e-12);
     EXPECT_NEAR(impulse.x(), -0.3 * 20.0 * h, 1e-12);

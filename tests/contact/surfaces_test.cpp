@@ -182,7 +182,7 @@ TEST(SurfaceContacts, TheGradientOfTheGapIsNormalTimesWeight) {
           std::vector<Vec3> y = x;
           y[uz(c.node[a])][k] += by;
           for (const Contact& d : contacts_of(model, y, y, 0.004)) {
-            if (d.key == c.key) return d.gap;
+            if (d.id == c.id) return d.gap;
           }
           return std::nan("");
         };

@@ -13,7 +13,6 @@
 namespace sinew {
 namespace {
 
-
 // ---- the shape of an obstacle, in its own frame ----
 
 SurfacePoint surface_of(const Obstacle& o, const Vec3& q) {
@@ -109,11 +108,6 @@ double moment_of(double before, double after) {
   return before <= 0.0 ? 0.0 : before / (before - after);
 }
 
-std::uint64_t key_of(Index obstacle, int part, std::uint64_t what) {
-  return (std::uint64_t{1} << 63) | (static_cast<std::uint64_t>(obstacle) << 44) |
-         (static_cast<std::uint64_t>(part) << 36) | what;
-}
-
 void add_node(const Moving& m, Index node, const std::vector<Vec3>& from,
               const std::vector<Vec3>& to, double reach, std::vector<Contact>& out) {
   const Vec3 q0 = m.before.own(from[uz(node)]);
@@ -125,14 +119,13 @@ void add_node(const Moving& m, Index node, const std::vector<Vec3>& from,
   c.weight[0] = 1.0;
   c.count = 1;
   c.normal = m.after.turn * wall->normal;
-  c.anchor = m.after.at(wall->nearest);
-  c.way = c.anchor - m.before.at(wall->nearest);
+  c.anchor = m.after.at(wall->anchor);
+  c.way = m.after.at(wall->nearest) - m.before.at(wall->nearest);
   c.gap = contact_gap(c, to);
   c.moment = moment_of(wall->normal.dot(q0 - wall->nearest), c.gap);
   c.friction = m.obstacle->friction;
   c.restitution = m.obstacle->restitution;
-  c.obstacle = m.index;
-  c.key = key_of(m.index, 0, static_cast<std::uint64_t>(node));
+  c.id = {ContactKind::node_shape, m.index, node, -1};
   out.push_back(c);
 }
 
@@ -189,7 +182,7 @@ void add_triangles(const Model& model, const Moving& m, std::size_t body,
   if (near.empty()) return;
   for (std::size_t r = 0; r < rods.size(); ++r) {
     const std::size_t first = out.size();
-    add_rod_contacts(rods[r], model.skin.triangles, near, from, to, reach, out);
+    add_rod_contacts(rods[r], model.skin, near, from, to, reach, out);
     for (std::size_t i = first; i < out.size(); ++i) {
       Contact& c = out[i];
       const Vec3 place = m.after.own(c.anchor);
@@ -201,15 +194,15 @@ void add_triangles(const Model& model, const Moving& m, std::size_t body,
       c.moment = moment_of(before, c.gap);
       c.friction = m.obstacle->friction;
       c.restitution = m.obstacle->restitution;
-      c.obstacle = m.index;
-      c.key = key_of(m.index, static_cast<int>(r) + 1, c.key);
+      c.id.owner = m.index;
+      c.id.partner = static_cast<Index>(r);
     }
   }
 }
 
 // Boxes around the ways of the bodies' surfaces.
 std::vector<Eigen::AlignedBox3d> boxes_of_bodies(const Model& model, const std::vector<Vec3>& from,
-                                 const std::vector<Vec3>& to) {
+                                                 const std::vector<Vec3>& to) {
   std::vector<Eigen::AlignedBox3d> boxes(model.bodies.size());
   for (std::size_t b = 0; b < boxes.size(); ++b) {
     const Range own = model.skin.body_nodes[b];
@@ -234,6 +227,30 @@ bool may_meet(const Moving& m, const Eigen::AlignedBox3d& body, double reach) {
   return false;
 }
 
+// Gives the edges numbers: those of both their triangles are the same.
+void number_edges(Skin& skin) {
+  struct Side {
+    Edge edge;
+    std::size_t triangle, corner;
+  };
+  std::vector<Side> sides;
+  for (std::size_t t = 0; t < skin.triangles.size(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto [a, b] =
+          std::minmax(skin.triangles[t][(c + 1) % 3], skin.triangles[t][(c + 2) % 3]);
+      sides.push_back({{a, b}, t, c});
+    }
+  }
+  std::sort(sides.begin(), sides.end(),
+            [](const Side& a, const Side& b) { return a.edge < b.edge; });
+  skin.triangle_edges.resize(skin.triangles.size());
+  Index number = 0;
+  for (std::size_t i = 0; i < sides.size(); ++i) {
+    if (i > 0 && sides[i].edge != sides[i - 1].edge) ++number;
+    skin.triangle_edges[sides[i].triangle][sides[i].corner] = number;
+  }
+}
+
 }  // namespace
 
 void build_skin(Model& model) {
@@ -243,6 +260,7 @@ void build_skin(Model& model) {
   std::vector<bool> on(uz(model.body_node_count()), false);
   for (const Triangle& t : skin.triangles)
     for (const Index node : t) on[uz(node)] = true;
+  number_edges(skin);
   std::size_t t = 0;
   for (const Body& body : model.bodies) {
     Range triangles{static_cast<Index>(t), 0};
@@ -294,8 +312,9 @@ void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
         add_triangles(model, m, b, from, to, reach, out);
     }
   }
-  std::sort(out.begin(), out.end(),
-            [](const Contact& a, const Contact& b) { return a.key < b.key; });
+  if (!std::is_sorted(out.begin(), out.end(), comes_before)) {
+    std::sort(out.begin(), out.end(), comes_before);
+  }
 }
 
 void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
@@ -331,7 +350,9 @@ void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
     }
     out.friction = found->friction;
     out.restitution = found->restitution;
-    out.obstacle = static_cast<Index>(found - model.obstacles.begin());
+    out.id.kind =
+        c.id.kind == ContactKind::edge_edge ? ContactKind::edge_mesh : ContactKind::node_mesh;
+    out.id.owner = static_cast<Index>(found - model.obstacles.begin());
     c = out;
   }
 }

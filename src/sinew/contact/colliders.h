@@ -13,7 +13,7 @@ namespace sinew {
 void build_skin(Model& model);
 
 // Contacts of a step from positions `from` at time t0 to `to` at time t1 [m] (nodes) with all hard
-// obstacles but meshes, into `out` (which is cleared), sorted by key:
+// obstacles but meshes, into `out` (which is cleared), sorted by id:
 //
 //   node against a shape: every node of the surface whose gap at `to` is below `reach` [m], and
 //   those
@@ -32,7 +32,7 @@ void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
 
 // Contacts with rigid meshes as SurfaceContacts finds them, between nodes, into contacts with a
 // collider: what is touched is the obstacle, whose nodes go into `anchor` and `way`; friction and
-// restitution are its own. What touches no mesh stays as it is; an order by key is kept.
+// restitution are its own. What touches no mesh stays as it is.
 void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
                          const std::vector<Vec3>& to, std::vector<Contact>& contacts);
 

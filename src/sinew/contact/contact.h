@@ -4,15 +4,12 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "sinew/base/vec.h"
+#include "sinew/model/contact_id.h"
 
 namespace sinew {
-
-// What stands for the ground where contacts are told apart by their obstacle.
-constexpr Index ground_obstacle = -2;
 
 // A condition on one to four nodes. The place that touches, seen from what it touches, is
 //
@@ -36,9 +33,7 @@ struct Contact {
                                // was 0 or less from the start
   double friction = 0.0;       // [-] Coulomb's mu
   double restitution = 0.0;    // [-]
-  Index obstacle = -1;         // the collider, index into Model::obstacles; -1: none; -2: the
-                               // ground
-  std::uint64_t key = 0;       // of the pair: the same from step to step; unique with `obstacle`
+  ContactId id;                // which contact it is; unique within a step
 };
 
 // Where the contact's place is, seen from what it touches [m].
@@ -49,9 +44,8 @@ inline Vec3 contact_offset(const Contact& c, const std::vector<Vec3>& x) {
   return r;
 }
 
-// The order of contacts: the ground's, those between bodies, then obstacle by obstacle, by key.
 inline bool comes_before(const Contact& a, const Contact& b) {
-  return a.obstacle != b.obstacle ? a.obstacle < b.obstacle : a.key < b.key;
+  return a.id < b.id;
 }
 
 inline double contact_gap(const Contact& c, const std::vector<Vec3>& x) {

@@ -10,6 +10,18 @@
 namespace sinew {
 namespace {
 
+// Whether contacts can share nodes: not where one plane is all that can be touched.
+bool may_share_nodes(const Model& model) {
+  if (!model.surface.triangles.empty()) return true;
+  Index planes = model.ground ? 1 : 0;
+  for (const Obstacle& o : model.obstacles) {
+    if (!o.hard()) continue;
+    if (o.shape != ObstacleShape::plane) return true;
+    ++planes;
+  }
+  return planes > 1;
+}
+
 // Of the size of a mean tet: far more than what a step at rest moves, far less than what is seen.
 constexpr double reach_share = 1e-3;
 
@@ -19,7 +31,7 @@ ContactFinder::ContactFinder(const Model& model) : model_(model) {
   const double mean_volume =
       std::accumulate(model.rest_volume.begin(), model.rest_volume.end(), 0.0) /
       std::max(1.0, static_cast<double>(model.tet_count()));
-  explicit_reach_ = reach_share * std::cbrt(mean_volume);
+  if (may_share_nodes(model)) explicit_reach_ = reach_share * std::cbrt(mean_volume);
   has_rigid_surfaces_ = model.surface.owner_count() > model.surface.body_count;
   if (!model.surface.triangles.empty()) surfaces_ = std::make_unique<SurfaceContacts>(model);
 }
@@ -32,21 +44,30 @@ bool ContactFinder::anything_to_find(const Model& model) {
                      [](const Obstacle& o) { return o.hard(); });
 }
 
+void ContactFinder::find_shapes(const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                                double t0, double t1, double reach,
+                                std::vector<Contact>& contacts) {
+  find_collider_contacts(model_, from, to, t0, t1, reach, contacts);
+}
+
+void ContactFinder::find_surfaces(const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+                                  double reach, std::vector<Contact>& contacts) {
+  contacts.clear();
+  if (!surfaces_) return;
+  surfaces_->find(from, to, reach, contacts);
+  if (has_rigid_surfaces_) name_rigid_contacts(model_, from, to, contacts);
+  if (!std::is_sorted(contacts.begin(), contacts.end(), comes_before)) {
+    std::sort(contacts.begin(), contacts.end(), comes_before);
+  }
+}
+
 void ContactFinder::find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0,
                          double t1, double reach, std::vector<Contact>& contacts) {
-  const auto first = std::ssize(contacts);
-  const auto append = [&] { contacts.insert(contacts.end(), part_.begin(), part_.end()); };
-  if (surfaces_) {
-    surfaces_->find(from, to, reach, part_);
-    if (has_rigid_surfaces_) name_rigid_contacts(model_, from, to, part_);
-    first == 0 ? contacts.swap(part_) : append();
-  }
-  find_collider_contacts(model_, from, to, t0, t1, reach, part_);
-  append();
-  const auto begin = contacts.begin() + first;
-  if (!std::is_sorted(begin, contacts.end(), comes_before)) {
-    std::sort(begin, contacts.end(), comes_before);
-  }
+  contacts.clear();
+  find_shapes(from, to, t0, t1, reach, contacts);
+  if (!surfaces_) return;
+  find_surfaces(from, to, reach, part_);
+  contacts.insert(contacts.end(), part_.begin(), part_.end());
 }
 
 }  // namespace sinew

@@ -19,8 +19,7 @@ void find_ground_contacts(const Model& model, const std::vector<Vec3>& x, double
     c.gap = gap;
     c.friction = ground.friction;
     c.restitution = ground.restitution;
-    c.obstacle = ground_obstacle;
-    c.key = static_cast<std::uint64_t>(i);
+    c.id = {ContactKind::node_shape, -1, i, -1};
     contacts.push_back(c);
   }
 }

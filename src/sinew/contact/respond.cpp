@@ -21,9 +21,6 @@ constexpr double speed_out = 0.1;
 // step in which springs are at work is no better.
 constexpr double seems_made = 0.05;
 
-// How far a push of the step before is looked for around its place in the order.
-constexpr std::size_t recall_range = 8;
-
 // Of the place across the gap [m/s].
 inline Vec3 relative(const Impact& i, const std::vector<Vec3>& v) {
   Vec3 sum = i.weight[0] * v[i.slot[0]];
@@ -75,7 +72,7 @@ void aim(const Model& model, const std::vector<Vec3>& force, double h, const Vec
   const Contact& c = *arrival.contact;
   arrival.bounces = arrival.known = false;
   impact.speed = Vec3::Zero();
-  if (c.obstacle >= 0) impact.speed = c.way / h;
+  if (c.id.obstacle() >= 0) impact.speed = c.way / h;
   arrival.velocity = c.normal.dot(velocity - impact.speed);
   if (c.restitution > 0.0 && c.gap < 0.0) {
     arrival.pull = acceleration(model, c, force);
@@ -127,16 +124,8 @@ void find_impacts(const Model& model, const std::vector<Contact>& contacts,
   s.arrivals.resize(n);
 }
 
-bool comes_before(const ContactPush& p, const Contact& c) {
-  return p.obstacle != c.obstacle ? p.obstacle < c.obstacle : p.key < c.key;
-}
-
-// The pair is the same but for the second partner: a node that has gone on to the next triangle.
-bool goes_on(const ContactPush& p, const Contact& c) {
-  return p.obstacle == c.obstacle && p.node[0] == c.node[0] && p.key >> 31 == c.key >> 31;
-}
-
-// Begins with what the same pair pushed with in the step before [N], or with what its node did.
+// Warm start: begins with what the same pair pushed with in the step before [N], or with what its
+// feature did, where that has gone on to another part of the same owner. Both lists are by id.
 void recall(const std::vector<ContactPush>& before, double kick, ContactScratch& s) {
   s.velocity = s.predicted;
   if (before.empty()) return;
@@ -155,21 +144,21 @@ void recall(const std::vector<ContactPush>& before, double kick, ContactScratch&
   std::size_t p = 0;
   bool all = true;
   for (std::size_t k = 0; k < s.impacts.size(); ++k) {
-    const Contact& c = *s.arrivals[k].contact;
-    while (p < before.size() && comes_before(before[p], c)) ++p;
+    const ContactId& id = s.arrivals[k].contact->id;
+    while (p < before.size() && before[p].id < id) ++p;
     s.arrivals[k].recalled = p;
-    const bool same =
-        p < before.size() && before[p].key == c.key && before[p].obstacle == c.obstacle;
+    const bool same = p < before.size() && before[p].id == id;
     all = all && same;
-    if (same && s.taken[p] == 0) begin_with(k, p);
+    if (same) begin_with(k, p);
   }
   if (all) return;
   for (std::size_t k = 0; k < s.impacts.size(); ++k) {
     if (s.arrivals[k].known) continue;
-    const std::size_t at = s.arrivals[k].recalled;
-    const std::size_t end = std::min(before.size(), at + recall_range);
-    for (std::size_t q = at - std::min(at, recall_range); q < end; ++q) {
-      if (s.taken[q] != 0 || !goes_on(before[q], *s.arrivals[k].contact)) continue;
+    const ContactId& id = s.arrivals[k].contact->id;
+    std::size_t q = s.arrivals[k].recalled;  // those of the same feature are around it
+    while (q > 0 && before[q - 1].id.same_feature(id)) --q;
+    for (; q < before.size() && before[q].id.same_feature(id); ++q) {
+      if (s.taken[q] != 0) continue;
       begin_with(k, q);
       break;
     }
@@ -362,10 +351,11 @@ ContactReport respond_to_contacts(const Model& model, const std::vector<Contact>
     const Vec3 total = i.impulse * i.normal + i.grip;
     report.work_in += total.dot(i.speed);
     report.friction -= i.grip.dot(relative(i, s.mean) - i.speed);
-    if (c.obstacle >= 0) state.obstacle_force[uz(c.obstacle)] -= total / kick;
+    const Index obstacle = c.id.obstacle();
+    if (obstacle >= 0) state.obstacle_force[uz(obstacle)] -= total / kick;
     const double along = i.normal.dot(relative(i, s.velocity) - i.speed);
     report.deepest = std::max(report.deepest, -(c.gap + h * (along - a.velocity)));
-    pushes.push_back({c.key, c.node, c.weight, c.count, c.obstacle, total / kick});
+    pushes.push_back({c.id, c.node, c.weight, total / kick});
   }
   if (bounced) {
     report.deepest = 0.0;

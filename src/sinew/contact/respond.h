@@ -48,15 +48,6 @@ struct ContactScratch {
     std::size_t recalled = 0;  // where its push of the step before is, or would be
     bool known = false;        // it is there
   };
-  // For those who look for contacts: those of the step, nodes that are held meanwhile, where they
-  // were, and with what (nodes of the model).
-  struct Held {
-    Index node = 0;
-    Vec3 position = Vec3::Zero();  // [m]
-  };
-  std::vector<Contact> contacts;
-  std::vector<Held> held;
-  std::vector<Vec3> hold;           // [N], zero between steps
   std::vector<Impact> impacts;      // of those that can be pushed
   std::vector<Arrival> arrivals;    // (impacts)
   std::vector<Index> node;          // (slots)

@@ -107,8 +107,8 @@ Contact contact_of(const Hit& hit, const Rod& rod, const Triangle& t, const std:
 
 // An edge's hit as one of its triangles sees it.
 struct EdgeHit {
-  Edge edge;
-  std::uint64_t key = 0;
+  Index edge = -1;
+  Index triangle = -1;
   Contact contact;
   double facing = 0.0;
   bool crossed = false;
@@ -145,9 +145,9 @@ std::vector<Rod> rods_of(const Obstacle& o, const Pose& before, const Pose& afte
   return rods;
 }
 
-void add_rod_contacts(const Rod& rod, const std::vector<Triangle>& triangles,
-                      const std::vector<Index>& near, const std::vector<Vec3>& from,
-                      const std::vector<Vec3>& to, double reach, std::vector<Contact>& out) {
+void add_rod_contacts(const Rod& rod, const Skin& skin, const std::vector<Index>& near,
+                      const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
+                      std::vector<Contact>& out) {
   Eigen::AlignedBox3d box;
   for (const Vec3* end : {&rod.a0, &rod.b0, &rod.a1, &rod.b1}) box.extend(*end);
   const Vec3 margin = Vec3::Constant(rod.radius + reach);
@@ -155,7 +155,7 @@ void add_rod_contacts(const Rod& rod, const std::vector<Triangle>& triangles,
 
   std::vector<EdgeHit> edges;
   for (const Index index : near) {
-    const Triangle& t = triangles[uz(index)];
+    const Triangle& t = skin.triangles[uz(index)];
     Sweep sweep{{}, {}, rod};
     Eigen::AlignedBox3d around;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -170,21 +170,21 @@ void add_rod_contacts(const Rod& rod, const std::vector<Triangle>& triangles,
     if (!rod.ball && (hit->pair.share <= 0.0 || hit->pair.share >= 1.0)) continue;
     Contact c = contact_of(*hit, rod, t, to);
     if (c.count == 3 && hit->facing > 0.0) {
-      c.key = 3 * static_cast<std::uint64_t>(triangles.size()) + static_cast<std::uint64_t>(index);
+      c.id.kind = ContactKind::triangle_rod;
+      c.id.feature = index;
       out.push_back(c);
     } else if (c.count == 2) {
-      const int apex = hit->pair.weight[0] == 0.0 ? 0 : hit->pair.weight[1] == 0.0 ? 1 : 2;
-      edges.push_back({{std::min(c.node[0], c.node[1]), std::max(c.node[0], c.node[1])},
-                       3 * static_cast<std::uint64_t>(index) + static_cast<std::uint64_t>(apex),
-                       c,
-                       hit->facing,
-                       hit->crossed});
+      const Vec3& weight = hit->pair.weight;
+      const std::size_t apex = weight[0] == 0.0 ? 0 : weight[1] == 0.0 ? 1 : 2;
+      c.id.kind = ContactKind::edge_rod;
+      c.id.feature = skin.triangle_edges[uz(index)][apex];
+      edges.push_back({c.id.feature, index, c, hit->facing, hit->crossed});
     }
   }
   // An edge counts once, if what its triangles see of the rod is outside. It need not be nearest in
   // both: in a step that goes deep the two may differ, and the place would be let through.
   std::sort(edges.begin(), edges.end(), [](const EdgeHit& a, const EdgeHit& b) {
-    return std::pair(a.edge, a.key) < std::pair(b.edge, b.key);
+    return std::pair(a.edge, a.triangle) < std::pair(b.edge, b.triangle);
   });
   for (std::size_t i = 0; i < edges.size();) {
     std::size_t end = i;
@@ -194,11 +194,7 @@ void add_rod_contacts(const Rod& rod, const std::vector<Triangle>& triangles,
       facing += edges[end].facing;
       if (edges[end].crossed && !chosen->crossed) chosen = &edges[end];
     }
-    if (facing > 0.0) {
-      Contact c = chosen->contact;
-      c.key = edges[i].key;
-      out.push_back(c);
-    }
+    if (facing > 0.0) out.push_back(chosen->contact);
     i = end;
   }
 }

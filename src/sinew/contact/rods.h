@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sinew/contact/contact.h"
-#include "sinew/model/obstacle.h"
+#include "sinew/model/model.h"
 
 namespace sinew {
 
@@ -24,13 +24,13 @@ struct Rod {
 std::vector<Rod> rods_of(const Obstacle& obstacle, const Pose& before, const Pose& after,
                          double longest_edge);
 
-// Adds the contacts of a rod with the triangles `near` (indices into `triangles`): where the
-// distance between the segment and a triangle is smallest, within it or on an edge, and the gap at
-// the end is below `reach`, or where they first met on the way; an edge counts once. Contacts with
-// a single node are left out: nodes are looked at on their own. Filled: node, weight, count,
-// normal, anchor, gap; key: 3 triangle + edge, or 3 triangles + t.
-void add_rod_contacts(const Rod& rod, const std::vector<Triangle>& triangles,
-                      const std::vector<Index>& near, const std::vector<Vec3>& from,
-                      const std::vector<Vec3>& to, double reach, std::vector<Contact>& out);
+// Adds the contacts of a rod with the triangles `near` of the skin (indices into its triangles):
+// where the distance between the segment and a triangle is smallest, within it or on an edge, and
+// the gap at the end is below `reach`, or where they first met on the way; an edge counts once.
+// Contacts with a single node are left out: nodes are looked at on their own. Filled: node, weight,
+// count, normal, anchor, gap, and of the id the kind and the feature.
+void add_rod_contacts(const Rod& rod, const Skin& skin, const std::vector<Index>& near,
+                      const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
+                      std::vector<Contact>& out);
 
 }  // namespace sinew

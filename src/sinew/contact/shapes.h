@@ -18,11 +18,13 @@ struct SurfacePoint {
   double distance = 0.0;        // [m] < 0: the point is inside
   Vec3 normal = Vec3::UnitY();  // [-] unit, outwards, of the surface at `nearest`
   Vec3 nearest = Vec3::Zero();  // [m] on the surface
+  Vec3 anchor = nearest;        // [m] on its tangent plane there, from where gaps are measured
 };
 
-// The half-space y <= 0.
+// The half-space y <= 0. Gaps are measured from its origin, so that a node at rest does not move
+// it.
 inline SurfacePoint plane_surface(const Vec3& q) {
-  return {q.y(), Vec3::UnitY(), Vec3(q.x(), 0.0, q.z())};
+  return {q.y(), Vec3::UnitY(), Vec3(q.x(), 0.0, q.z()), Vec3::Zero()};
 }
 
 // The ball of radius R about `middle`: distance |q - middle| - R.

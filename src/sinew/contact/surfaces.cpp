@@ -128,8 +128,9 @@ void SurfaceContacts::find(const std::vector<Vec3>& from, const std::vector<Vec3
     });
     ++number;
   }
-  const auto by_key = [](const Contact& p, const Contact& q) { return p.key < q.key; };
-  if (!std::is_sorted(out.begin(), out.end(), by_key)) std::sort(out.begin(), out.end(), by_key);
+  if (!std::is_sorted(out.begin(), out.end(), comes_before)) {
+    std::sort(out.begin(), out.end(), comes_before);
+  }
 }
 
 }  // namespace sinew

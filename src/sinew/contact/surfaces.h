@@ -23,7 +23,7 @@ class SurfaceContacts {
 
   // The contacts of a step in which the nodes move from `from` to `to` [m] (nodes): pairs that are
   // nearer than `reach` [m] >= 0 at its end, or inside (0: touching or inside), and those that met
-  // on the way. Sorted by key. Pairs that deep inside each other at both ends that no side can be
+  // on the way. Sorted by id. Pairs that deep inside each other at both ends that no side can be
   // told are left alone: find_overlaps() knows them.
   void find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
             std::vector<Contact>& out);

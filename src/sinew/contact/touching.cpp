@@ -316,7 +316,7 @@ NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& t
                      end.fit.distance() < moves.reach;
   const auto finish = [&](Index t) {
     c.gap = contact_gap(c, moves.to);
-    c.key = (static_cast<std::uint64_t>(slot) << 31) | static_cast<std::uint64_t>(t);
+    c.id = {ContactKind::node_triangle, owner, slot, t};
     return c.gap < moves.reach || (c.gap <= 0.0 && moves.reach == 0.0);
   };
   if (hit.met && !(deep && hit.normal.dot(end.fit.plane) > 0.5)) {

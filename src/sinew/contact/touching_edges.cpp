@@ -9,7 +9,6 @@
 namespace sinew {
 namespace {
 
-constexpr std::uint64_t edge_kind = std::uint64_t{1} << 62;
 // How much deeper than its end is away an edge may be before its answer, as a share of the size.
 constexpr double end_share = 0.05;
 
@@ -67,15 +66,15 @@ bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Co
   const bool over = !on.parallel && on.s > 0.0 && on.s < 1.0 && on.t > 0.0 && on.t < 1.0;
   if (calm && !over) return false;
   const double size = std::min(edge_size(ea), edge_size(eb));
-  const bool self = triangle_owner_[uz(surface_.edge_triangles[uz(ea)][0])] ==
-                    triangle_owner_[uz(surface_.edge_triangles[uz(eb)][0])];
+  const Index owner = triangle_owner_[uz(surface_.edge_triangles[uz(eb)][0])];
+  const bool self = triangle_owner_[uz(surface_.edge_triangles[uz(ea)][0])] == owner;
   if (self && adjoin(a, b)) return false;
   c = Contact{};
   c.count = 4;
   c.friction = friction_;
   c.restitution = restitution_;
   c.node = {a[0], a[1], b[0], b[1]};
-  c.key = edge_kind | (static_cast<std::uint64_t>(ea) << 31) | static_cast<std::uint64_t>(eb);
+  c.id = {ContactKind::edge_edge, owner, ea, eb};
   const auto set = [&](double s, double t, const Vec3& n) {
     c.weight = {1.0 - s, s, t - 1.0, -t};
     c.normal = n;

@@ -12,6 +12,7 @@
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
+#include "sinew/model/warm_start.h"
 
 namespace sinew {
 
@@ -75,29 +76,6 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
   return power;
 }
 
-namespace {
-
-// What rests on something is held by it. A node's push of the last step counts up to the size of
-// its force: more than that was an impact, which is over.
-void add_what_holds(const Model& model, const State& state, const Workspace& workspace,
-                    std::vector<Vec3>& v) {
-  if (state.last_step == 0.0 || state.reactions.contacts.empty()) return;
-  std::vector<Vec3> held(v.size(), Vec3::Zero());
-  for (const ContactPush& p : state.reactions.contacts) {
-    for (std::size_t a = 0; a < static_cast<std::size_t>(p.count); ++a)
-      held[uz(p.node[a])] += p.weight[a] * p.push;
-  }
-  parallel_for(model.node_count(), [&](Index i) {
-    const auto k = uz(i);
-    const double size = held[k].norm();
-    if (size == 0.0) return;
-    const double share = std::min(1.0, workspace.force[k].norm() / size);
-    v[k] += (0.5 * state.last_step * model.inverse_mass[k] * share) * held[k];
-  });
-}
-
-}  // namespace
-
 std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
                                        const Workspace& workspace) {
   std::vector<Vec3> v(state.half_velocity);
@@ -105,7 +83,14 @@ std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
     const auto k = uz(i);
     v[k] += (0.5 * state.last_step * model.inverse_mass[k]) * workspace.force[k];
   });
-  add_what_holds(model, state, workspace, v);
+  // What rests on something is held by it.
+  std::vector<NodeHold> held;
+  std::vector<Vec3> sum;
+  warm_start(state, workspace.force, sum, held);
+  for (const NodeHold& hold : held) {
+    const auto k = uz(hold.node);
+    v[k] += (0.5 * state.last_step * model.inverse_mass[k] * hold.share) * hold.push;
+  }
   return v;
 }
 

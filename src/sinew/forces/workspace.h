@@ -11,8 +11,7 @@
 namespace sinew {
 
 class PackedForces;
-class ContactFinder;
-struct ContactScratch;
+class ExplicitContacts;
 
 struct Workspace {
   explicit Workspace(const Model& model);
@@ -20,10 +19,9 @@ struct Workspace {
   // Where it is set, compute_forces() takes tets and springs from it, in single precision.
   std::shared_ptr<PackedForces> packed;
 
-  // Of contacts, made by the stepper that first looks for them (contact/find.h).
-  std::shared_ptr<ContactFinder> contacts;
-  std::shared_ptr<ContactScratch> answer;  // of explicit steps (contact/respond.h)
-  std::vector<Vec3> before;  // positions before the move, where contacts are looked for [m] (nodes)
+  // Of Verlet's steps, made by the first of a model in which things can touch.
+  std::shared_ptr<ExplicitContacts> contacts;
+  std::vector<Vec3> before;  // positions before the move [m] (nodes)
 
   std::vector<Vec3> spring_force;     // on end 0 of each spring [N] (springs)
   std::vector<Vec3> force;            // total on each node [N] (nodes)

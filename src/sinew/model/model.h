@@ -84,11 +84,13 @@ struct Tether {
 
 // The surface of the bodies, body by body: what hard obstacles touch.
 struct Skin {
-  std::vector<Index> nodes;           // node ids, rising
-  std::vector<Triangle> triangles;    // node ids, counter-clockwise seen from outside
-  std::vector<Range> body_nodes;      // into nodes (bodies)
-  std::vector<Range> body_triangles;  // into triangles (bodies)
-  std::vector<double> longest_edge;   // of the surface at rest [m] (bodies)
+  std::vector<Index> nodes;         // node ids, rising
+  std::vector<Triangle> triangles;  // node ids, counter-clockwise seen from outside
+  std::vector<std::array<Index, 3>> triangle_edges;  // the edge opposite each corner, numbered
+                                                     // through (triangles)
+  std::vector<Range> body_nodes;                     // into nodes (bodies)
+  std::vector<Range> body_triangles;                 // into triangles (bodies)
+  std::vector<double> longest_edge;                  // of the surface at rest [m] (bodies)
 };
 
 // A named selection whose mean is reported each frame.

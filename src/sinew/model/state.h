@@ -1,11 +1,13 @@
 // What changes during a run. With the Model's hash it is all that a checkpoint holds.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <vector>
 
 #include "sinew/base/vec.h"
+#include "sinew/model/contact_id.h"
 #include "sinew/model/model.h"
 
 namespace sinew {
@@ -18,14 +20,18 @@ struct EnergyAccount {
 
 // What a contact pushes with (contact/contact.h says more of what stands here).
 struct ContactPush {
-  std::uint64_t key = 0;  // of the contact
-  std::array<Index, 4> node = {-1, -1, -1, -1};
-  std::array<double, 4> weight = {};  // of the nodes [-]
-  Index count = 0;                    // nodes used
-  Index obstacle = -1;                // as Contact::obstacle
+  ContactId id;
+  std::array<Index, 4> node = {-1, -1, -1, -1};  // those used first
+  std::array<double, 4> weight = {};             // of the nodes [-]
   Vec3 push = Vec3::Zero();  // on the place [N]: at the end of an implicit step, mean over Verlet's
+
+  std::size_t count() const {  // nodes used
+    return static_cast<std::size_t>(std::find(node.begin(), node.end(), -1) - node.begin());
+  }
 };
-static_assert(sizeof(ContactPush) == 88, "no gaps: checkpoints hold its bytes");
+static_assert(sizeof(ContactPush) == sizeof(ContactId) + 4 * sizeof(Index) + 7 * sizeof(double) &&
+                  sizeof(ContactId) == 4 * sizeof(Index),
+              "no gaps: checkpoints hold its bytes");
 
 // What contacts, the ground and the limits push with at the end of the last step, where the next
 // one starts from; empty before the first. Verlet's steps know only contacts, the ground among them
@@ -34,7 +40,7 @@ struct Reactions {
   std::vector<Vec3> ground;      // of the ground on each node [N] (nodes of bodies)
   std::vector<double> tension;   // of each limited spring [N] (as Model::limited), < 0: it pushes
   std::vector<double> pressure;  // on the volume of each limited cell [Pa] (cells), > 0: inwards
-  std::vector<ContactPush> contacts;  // those that push, by key
+  std::vector<ContactPush> contacts;  // those that push, by id
 };
 
 struct State {

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
-constexpr std::string_view magic = "SINEWCP6";
+constexpr std::string_view magic = "SINEWCP7";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>

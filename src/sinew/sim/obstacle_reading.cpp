@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sinew/contact/find.h"
+#include "sinew/contact/explicit_contacts.h"
 
 namespace sinew {
 namespace {
@@ -25,12 +25,13 @@ std::vector<ObstacleReading> read_obstacles(const Model& model, const State& sta
     if (model.obstacles[o].hard()) readings[o].force = state.obstacle_force[o];
 
   std::vector<Contact> contacts;
-  if (!workspace.contacts) workspace.contacts = std::make_shared<ContactFinder>(model);
-  workspace.contacts->find(state.position, state.position, state.time, state.time,
-                           1e-3 * longest_edge(model), contacts);
+  if (!workspace.contacts) workspace.contacts = std::make_shared<ExplicitContacts>(model);
+  workspace.contacts->finder().find(state.position, state.position, state.time, state.time,
+                                    1e-3 * longest_edge(model), contacts);
   for (const Contact& c : contacts) {
-    if (c.obstacle < 0) continue;
-    ObstacleReading& reading = readings[uz(c.obstacle)];
+    const Index obstacle = c.id.obstacle();
+    if (obstacle < 0) continue;
+    ObstacleReading& reading = readings[uz(obstacle)];
     ++reading.contacts;
     reading.depth = std::max(reading.depth, -c.gap);
   }

@@ -44,9 +44,7 @@ void ContactConstraints::start(const State& state, const std::vector<Vec3>* from
   held_.clear();
   for (const ContactPush& p : state.reactions.contacts) {
     Held h;
-    h.contact.key = p.key;
-    h.contact.node[0] = p.node[0];
-    h.contact.obstacle = p.obstacle;
+    h.contact.id = p.id;
     h.push = p.push;
     held_.push_back(h);
   }
@@ -66,41 +64,37 @@ ContactConstraints::Held ContactConstraints::hold(const Contact& c) const {
   return h;
 }
 
-// Contacts at x; what they push with is that of the same pair before, or of the same node where it
-// has gone on to the next triangle.
+// Contacts at x; what they push with is that of the same pair before, or of the same feature where
+// it has gone on to another part of its owner.
 void ContactConstraints::find(const std::vector<Vec3>& x) {
-  found_.clear();
   finder_->find(from_ != nullptr ? *from_ : here_, x, before_, now_, reach_, found_);
-  std::vector<Held> next;
-  std::vector<char> taken(held_.size(), 0);
-  const auto place = [](const Held& h) { return std::pair(h.contact.obstacle, h.contact.node[0]); };
-  std::vector<std::size_t> by_node(held_.size());
-  for (std::size_t k = 0; k < by_node.size(); ++k) by_node[k] = k;
-  std::sort(by_node.begin(), by_node.end(), [&](std::size_t a, std::size_t b) {
-    return std::pair(place(held_[a]), a) < std::pair(place(held_[b]), b);
-  });
   if (passes_ > free_passes) {
     add_new();
     return;
   }
+  std::vector<Held> next;
+  std::vector<char> taken(held_.size(), 0);
+  const auto place = [&](const ContactId& id) {
+    return std::lower_bound(held_.begin(), held_.end(), id,
+                            [](const Held& h, const ContactId& i) { return h.contact.id < i; });
+  };
   for (const Contact& c : found_) {
     next.push_back(hold(c));
-    const auto same = std::lower_bound(
-        held_.begin(), held_.end(), c,
-        [](const Held& h, const Contact& other) { return comes_before(h.contact, other); });
-    if (same == held_.end() || comes_before(c, same->contact)) continue;
+    const auto same = place(c.id);
+    if (same == held_.end() || same->contact.id != c.id) continue;
     taken[static_cast<std::size_t>(same - held_.begin())] = 1;
     next.back().push = same->push;
   }
   for (Held& h : next) {
+    const ContactId& id = h.contact.id;
     if (h.push.isZero(0.0)) {
-      const auto first =
-          std::lower_bound(by_node.begin(), by_node.end(), place(h),
-                           [&](std::size_t k, const auto& p) { return place(held_[k]) < p; });
-      for (auto k = first; k != by_node.end() && place(held_[*k]) == place(h); ++k) {
-        if (taken[*k] != 0) continue;
-        taken[*k] = 1;
-        h.push = held_[*k].push;
+      auto k = place(id);
+      while (k != held_.begin() && std::prev(k)->contact.id.same_feature(id)) --k;
+      for (; k != held_.end() && k->contact.id.same_feature(id); ++k) {
+        char& used = taken[static_cast<std::size_t>(k - held_.begin())];
+        if (used != 0) continue;
+        used = 1;
+        h.push = k->push;
         break;
       }
     }
@@ -249,7 +243,7 @@ std::vector<ContactPush> ContactConstraints::pushes() const {
   for (const Held& h : held_) {
     if (h.push.isZero(0.0)) continue;
     const Contact& c = h.contact;
-    out.push_back({c.key, c.node, c.weight, c.count, c.obstacle, h.push});
+    out.push_back({c.id, c.node, c.weight, h.push});
   }
   return out;
 }
@@ -262,7 +256,8 @@ double ContactConstraints::deepest(const std::vector<Vec3>& x) const {
 
 void ContactConstraints::add_obstacle_forces(std::vector<Vec3>& force) const {
   for (const Held& h : held_) {
-    if (h.contact.obstacle >= 0) force[uz(h.contact.obstacle)] -= h.push;
+    const Index obstacle = h.contact.id.obstacle();
+    if (obstacle >= 0) force[uz(obstacle)] -= h.push;
   }
 }
 

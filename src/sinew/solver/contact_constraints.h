@@ -15,7 +15,7 @@ namespace sinew {
 // normals as they were then: within a pass of minimise_within they stay, so that what is minimised
 // is smooth and has a tangent; update() finds them anew. After some passes it only adds to them: in
 // a fold two places can go to and fro between two faces for ever. Contacts keep their push from
-// pass to pass and from step to step by their key, or by the node where the partner has changed.
+// pass to pass and from step to step by their id, or by the feature where the partner has changed.
 class ContactConstraints {
  public:
   // compliance: of the nodes [m/N]; ratio: of a contact's stiffness and what its nodes resist with.
@@ -85,7 +85,7 @@ class ContactConstraints {
   std::vector<Vec3> here_;           // what stands for `from` in rest states [m] (nodes)
   double before_ = 0.0, now_ = 0.0;  // times of the step [s]
   std::vector<Contact> found_;
-  std::vector<Held> held_;  // by key
+  std::vector<Held> held_;  // by id
   std::vector<Tangent> tangents_;
 };
 

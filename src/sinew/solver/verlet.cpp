@@ -4,13 +4,11 @@
 
 #include <algorithm>
 #include <limits>
-#include <span>
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
-#include "sinew/contact/find.h"
+#include "sinew/contact/explicit_contacts.h"
 #include "sinew/contact/ground.h"
-#include "sinew/contact/respond.h"
 #include "sinew/forces/limits.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/node_kernels.h"
@@ -103,106 +101,6 @@ void follow_positions(const Model& model, const Workspace& workspace,
   });
 }
 
-// Moves the nodes to where what they touched in the step before would hold them, so that what rests
-// stays where it is while contacts are looked for, and lists of what is near last. A node's push
-// counts up to the size of its force: more than that was an impact, which is over. False: nothing
-// is held. let_go() moves them back.
-bool hold(const Model& model, const Workspace& workspace, double h, State& state) {
-  ContactScratch& s = *workspace.answer;
-  s.held.clear();
-  if (state.last_step == 0.0) return false;
-  s.hold.resize(model.inverse_mass.size(), Vec3::Zero());
-  for (const ContactPush& p : state.reactions.contacts) {
-    for (std::size_t a = 0; a < static_cast<std::size_t>(p.count); ++a) {
-      const auto i = uz(p.node[a]);
-      if (s.hold[i].isZero(0.0)) s.held.push_back({p.node[a], state.position[i]});
-      s.hold[i] += p.weight[a] * p.push;
-    }
-  }
-  for (const auto& [node, position] : s.held) {
-    const auto i = uz(node);
-    const double size = s.hold[i].norm();
-    const double share = size > 0.0 ? std::min(1.0, workspace.force[i].norm() / size) : 0.0;
-    const double kick = 0.5 * (state.last_step + h);
-    state.position[i] += (h * kick * model.inverse_mass[i] * share) * s.hold[i];
-    s.hold[i].setZero();
-  }
-  return !s.held.empty();
-}
-
-void let_go(const Workspace& workspace, State& state) {
-  const auto& held = workspace.answer->held;
-  for (std::size_t k = held.size(); k-- > 0;) state.position[uz(held[k].node)] = held[k].position;
-}
-
-// Whether all that pushed in the step before, but for the ground, is among the contacts: the same
-// node or edge, of the same obstacle or of none.
-bool all_found(const std::vector<ContactPush>& pushes, std::span<const Contact> contacts) {
-  const auto place = [](const auto& p) { return std::pair(p.obstacle, p.key >> 31); };
-  auto c = contacts.begin();
-  for (const ContactPush& p : pushes) {
-    if (p.obstacle == ground_obstacle) continue;
-    while (c != contacts.end() && place(*c) < place(p)) ++c;
-    if (c == contacts.end() || place(*c) != place(p)) return false;
-  }
-  return true;
-}
-
-// Whether no place that pushed in the step before moves by more than `most` [m] in this one.
-bool rests(const State& state, const std::vector<Vec3>& before, double most) {
-  return std::all_of(
-      state.reactions.contacts.begin(), state.reactions.contacts.end(), [&](const ContactPush& p) {
-        Vec3 way = Vec3::Zero();
-        for (std::size_t a = 0; a < static_cast<std::size_t>(p.count); ++a) {
-          way += p.weight[a] * (state.position[uz(p.node[a])] - before[uz(p.node[a])]);
-        }
-        return way.squaredNorm() <= most * most;
-      });
-}
-
-// Contacts between bodies and with hard obstacles in the step that led to `state`. Where the pushes
-// of the step before would keep all that touched in touch, they are those at the places to which
-// the pushes lead, which is nearer to the end of the step; their gaps are those without.
-void find_contacts(const Model& model, Workspace& workspace, double h, double reach, State& state) {
-  std::vector<Contact>& contacts = workspace.answer->contacts;
-  const auto first = std::ssize(contacts);
-  const auto find = [&] {
-    workspace.contacts->find(workspace.before, state.position, state.time, state.time + h, reach,
-                             contacts);
-  };
-  if (!hold(model, workspace, h, state)) return find();
-  if (!rests(state, workspace.before, 10.0 * reach)) {  // it would be for nothing
-    let_go(workspace, state);
-    return find();
-  }
-  find();
-  let_go(workspace, state);
-  const std::span<Contact> found = std::span(contacts).subspan(static_cast<std::size_t>(first));
-  if (!all_found(state.reactions.contacts, found)) {
-    contacts.resize(static_cast<std::size_t>(first));
-    return find();
-  }
-  for (Contact& c : found) c.gap = contact_gap(c, state.position);
-}
-
-// Contacts of the move, and the answer to them.
-void respond(const Model& model, Workspace& workspace, double h, State& state,
-             VerletReport& report) {
-  if (!model.ground && !workspace.contacts) return;
-  if (!workspace.answer) workspace.answer = std::make_shared<ContactScratch>();
-  std::vector<Contact>& contacts = workspace.answer->contacts;
-  contacts.clear();
-  state.obstacle_force.assign(model.obstacles.size(), Vec3::Zero());
-  // Those that nearly touch take part: what the others push them into counts at once.
-  const double reach = workspace.contacts ? workspace.contacts->explicit_reach() : 0.0;
-  if (model.ground) find_ground_contacts(model, state.position, reach, contacts);
-  if (workspace.contacts) find_contacts(model, workspace, h, reach, state);
-  report.contact =
-      respond_to_contacts(model, contacts, workspace.force, h, state, *workspace.answer);
-  state.energy.dissipated += report.contact.dissipated;
-  state.energy.work_in += report.contact.work_in;
-}
-
 // Projects the limits, with the ground as a constraint among them; velocities follow.
 void enforce_limits(const Model& model, const Workspace& workspace, double h, State& state,
                     VerletReport& report) {
@@ -276,8 +174,9 @@ VerletReport verlet_step(const Model& model, double h, State& state, Workspace& 
     energy = measure_energies(model, state, workspace).total();
     right_tangled_bodies(model, state, h, workspace);
   }
-  if (ContactFinder::anything_to_find(model)) {
-    if (!workspace.contacts) workspace.contacts = std::make_shared<ContactFinder>(model);
+  const bool contacts = ExplicitContacts::any(model);
+  if (contacts) {
+    if (!workspace.contacts) workspace.contacts = std::make_shared<ExplicitContacts>(model);
     workspace.before = state.position;
   }
   add_work_of_loads(model, workspace, h, state);
@@ -285,7 +184,9 @@ VerletReport verlet_step(const Model& model, double h, State& state, Workspace& 
   const Index broken = move_free_nodes(model, workspace, h, state);
   move_pins(model, workspace, h, state);
   if (broken == none) {
-    respond(model, workspace, h, state, report);
+    if (contacts) {
+      report.contact = workspace.contacts->step(workspace.before, workspace.force, h, state);
+    }
     if (!model.limited.empty()) enforce_limits(model, workspace, h, state, report);
     if (model.has_volume_limit) enforce_volume(model, h, workspace, state, report);
   }

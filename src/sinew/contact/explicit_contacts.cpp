@@ -1,0 +1,126 @@
+#include "sinew/contact/explicit_contacts.h"
+
+#include <algorithm>
+#include <span>
+
+#include "sinew/contact/ground.h"
+
+namespace sinew {
+namespace {
+
+// What rests moves by no more than this in a step, as a multiple of the reach of contacts.
+constexpr double rests_within = 10.0;
+
+// Whether everything that pushed in the step before is among the contacts, maybe with other
+// partners: as many of the same feature and owner. Both are sorted by id.
+bool all_found(std::span<const ContactPush> pushes, std::span<const Contact> contacts) {
+  auto c = contacts.begin();
+  for (const ContactPush& p : pushes) {
+    while (c != contacts.end() && c->id < p.id && !c->id.same_feature(p.id)) ++c;
+    if (c == contacts.end() || !c->id.same_feature(p.id)) return false;
+    ++c;  // found for this push
+  }
+  return true;
+}
+
+// Whether no place that pushed in the step before moves by more than `most` [m] in this one.
+bool rests(const State& state, const std::vector<Vec3>& before, double most) {
+  return std::all_of(state.reactions.contacts.begin(), state.reactions.contacts.end(),
+                     [&](const ContactPush& p) {
+                       Vec3 way = Vec3::Zero();
+                       for (std::size_t a = 0; a < p.count(); ++a) {
+                         const auto i = uz(p.node[a]);
+                         way += p.weight[a] * (state.position[i] - before[i]);
+                       }
+                       return way.squaredNorm() <= most * most;
+                     });
+}
+
+}  // namespace
+
+ExplicitContacts::ExplicitContacts(const Model& model) : model_(model), finder_(model) {}
+
+bool ExplicitContacts::any(const Model& model) {
+  return model.ground.has_value() || ContactFinder::anything_to_find(model);
+}
+
+// Moves the nodes to where the warm start holds them. False: nothing is held, or it does not rest
+// there. let_go() leads them back.
+bool ExplicitContacts::hold(const std::vector<Vec3>& before, const std::vector<Vec3>& force,
+                            double h, State& state) {
+  holds_.clear();
+  if (finder_.explicit_reach() == 0.0) return false;  // each contact is on its own
+  warm_start(state, force, sum_, holds_);
+  if (holds_.empty()) return false;
+  const double kick = 0.5 * (state.last_step + h);
+  predicted_.clear();
+  for (const NodeHold& hold : holds_) {
+    const auto i = uz(hold.node);
+    predicted_.push_back(state.position[i]);
+    state.position[i] += (h * kick * model_.inverse_mass[i] * hold.share) * hold.push;
+  }
+  return rests(state, before, rests_within * finder_.explicit_reach());
+}
+
+// Back to the predicted positions.
+void ExplicitContacts::let_go(State& state) {
+  for (std::size_t k = holds_.size(); k-- > 0;) {
+    state.position[uz(holds_[k].node)] = predicted_[k];
+  }
+}
+
+void ExplicitContacts::find(const std::vector<Vec3>& before, const std::vector<Vec3>& force,
+                            double h, State& state) {
+  const double reach = finder_.explicit_reach();
+  const auto find_shapes = [&] {
+    finder_.find_shapes(before, state.position, state.time, state.time + h, reach, contacts_);
+    if (!model_.ground) return;
+    find_ground_contacts(model_, state.position, reach, contacts_);
+    std::sort(contacts_.begin(), contacts_.end(), comes_before);
+  };
+  const auto find_surfaces = [&] {
+    finder_.find_surfaces(before, state.position, reach, surfaces_);
+  };
+  const auto measure_gaps = [&](std::vector<Contact>& contacts) {
+    for (Contact& c : contacts) c.gap = contact_gap(c, state.position);
+  };
+
+  const bool held = hold(before, force, h, state);
+  if (held) {
+    find_shapes();
+    find_surfaces();
+  }
+  let_go(state);
+  const std::span<const ContactPush> pushes = state.reactions.contacts;
+  const auto of_shapes = static_cast<std::size_t>(
+      std::partition_point(pushes.begin(), pushes.end(),
+                           [](const ContactPush& p) { return p.id.with_shape(); }) -
+      pushes.begin());
+  if (held && all_found(pushes.first(of_shapes), contacts_)) {
+    measure_gaps(contacts_);
+  } else {
+    find_shapes();
+  }
+  if (held && all_found(pushes.subspan(of_shapes), surfaces_)) {
+    measure_gaps(surfaces_);
+  } else {
+    find_surfaces();
+  }
+  if (contacts_.empty()) {
+    contacts_.swap(surfaces_);
+  } else {
+    contacts_.insert(contacts_.end(), surfaces_.begin(), surfaces_.end());
+  }
+}
+
+ContactReport ExplicitContacts::step(const std::vector<Vec3>& before,
+                                     const std::vector<Vec3>& force, double h, State& state) {
+  find(before, force, h, state);
+  state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
+  const ContactReport report = respond_to_contacts(model_, contacts_, force, h, state, scratch_);
+  state.energy.dissipated += report.dissipated;
+  state.energy.work_in += report.work_in;
+  return report;
+}
+
+}  // namespace sinew

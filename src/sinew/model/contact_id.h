@@ -1,0 +1,57 @@
+// Which contact it is: what touches what. The same from step to step, so that a contact can begin
+// with what it pushed with in the step before (warm start).
+#pragma once
+
+#include <compare>
+#include <cstdint>
+
+#include "sinew/base/vec.h"
+
+namespace sinew {
+
+// What touches, and what is touched. In the order in which the contact solver takes them.
+enum class ContactKind : std::int32_t {
+  node_shape,     // feature: a node; partner: -1. Owner: an obstacle with a shape
+  edge_rod,       // feature: an edge of the skin; partner: a rod of the owner, an obstacle
+  triangle_rod,   // feature: a triangle of the skin; partner: a rod of the owner, an obstacle
+  node_mesh,      // feature: a node of the surface; partner: a triangle. Owner: an obstacle, a mesh
+  edge_mesh,      // feature and partner: edges of the surface. Owner: an obstacle, a mesh
+  node_triangle,  // feature: a node of the surface; partner: a triangle. Owner: a body
+  edge_edge,      // feature and partner: edges of the surface. Owner: a body
+};
+
+struct ContactId {
+  ContactKind kind = ContactKind::node_shape;
+  Index owner = -1;    // what is touched: index of an obstacle or a body, as the kind says
+  Index feature = -1;  // what touches it
+  Index partner = -1;  // which part of the owner is touched
+
+  auto operator<=>(const ContactId&) const = default;
+
+  // Whether the same feature touches the same owner, maybe another part of it: a node that has
+  // gone on to the next triangle.
+  bool same_feature(const ContactId& other) const {
+    return kind == other.kind && owner == other.owner && feature == other.feature;
+  }
+
+  // Whether an obstacle with a shape is touched, not a mesh or a body.
+  bool with_shape() const { return kind < ContactKind::node_mesh; }
+
+  // The obstacle that is touched, index into Model::obstacles; -1: a body is.
+  Index obstacle() const {
+    switch (kind) {
+      case ContactKind::node_shape:
+      case ContactKind::edge_rod:
+      case ContactKind::triangle_rod:
+      case ContactKind::node_mesh:
+      case ContactKind::edge_mesh:
+        return owner;
+      case ContactKind::node_triangle:
+      case ContactKind::edge_edge:
+        return -1;
+    }
+    return -1;
+  }
+};
+
+}  // namespace sinew

@@ -1,0 +1,29 @@
+#include "sinew/model/warm_start.h"
+
+#include <algorithm>
+
+namespace sinew {
+
+void warm_start(const State& state, const std::vector<Vec3>& force, std::vector<Vec3>& sum,
+                std::vector<NodeHold>& out) {
+  out.clear();
+  if (state.last_step == 0.0) return;
+  sum.resize(force.size(), Vec3::Zero());
+  for (const ContactPush& p : state.reactions.contacts) {
+    for (std::size_t a = 0; a < p.count(); ++a) {
+      Vec3& push = sum[uz(p.node[a])];
+      if (push.isZero(0.0)) out.push_back({p.node[a], 0.0, Vec3::Zero()});
+      push += p.weight[a] * p.push;
+    }
+  }
+  // A node whose pushes cancelled on the way is listed twice: its sum counts once.
+  for (NodeHold& hold : out) {
+    Vec3& push = sum[uz(hold.node)];
+    const double size = push.norm();
+    hold.share = size > 0.0 ? std::min(1.0, force[uz(hold.node)].norm() / size) : 0.0;
+    hold.push = push;
+    push.setZero();
+  }
+}
+
+}  // namespace sinew
