@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Puts the figures of `sinew bench` into docs/performance.md, between its marks
+"""Writes the figures of `sinew bench` into docs/performance.md, between its marks
 <!-- figures --> and <!-- /figures -->.
 
     ./dev bench

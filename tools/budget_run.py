@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Pulls the liver of scenes/liver.toml about at random with budget_ms, and says how it went.
+"""Pulls the liver of scenes/liver.toml at random with budget_ms, and reports the result.
 
     tools/budget_run.py [--sinew BIN] [--frames 10000] [--budget 4] [--seed 1] [--out DIR]
 
-A hand at the tip of the left lobe goes from place to place of a seeded random walk. Prints frames,
-wall time of the frames against the budget, residuals, the largest swing of the energy. Ends with 1
-where a frame is not finite."""
+A grab at the tip of the left lobe follows a seeded random walk. Prints frames, wall time of the
+frames against the budget, residuals, the largest change of the energy. Exit status 1 if a frame is
+not finite."""
 
 import argparse
 import csv

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""What contact adds to a frame: scenes with it and without, in one run, medians (docs/performance.md).
+"""The cost of contact per frame: scenes with and without it, in one run, medians (docs/performance.md).
 
   tools/contact_cost.py [--sinew build/release/sinew] [--rounds 5]
 
-Each scene runs to two durations on one thread; the difference of their wall times is what the time in
-between costs, without start-up.
+Each scene runs to two durations on one thread; the difference of their wall times is the cost of the
+time in between, without start-up.
 """
 import argparse
 import json

@@ -6,12 +6,12 @@ import xml.etree.ElementTree
 import meshio
 import numpy as np
 
-# Unit of the arrays that a run writes; others get none.
+# Units of the arrays of a run; other arrays have none.
 UNITS = {"displacement": "m", "velocity": "m/s", "pressure": "Pa"}
 
 
 class PictureError(Exception):
-    """What cannot be drawn, and why, for the user."""
+    """A message for the user: the object that cannot be drawn, and the reason."""
 
 
 class Frame:

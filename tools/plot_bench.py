@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Draws how cost grows, for docs/performance.md, from what the benchmarks have written.
+"""Plots the growth of the cost for docs/performance.md from the output of the benchmarks.
 
     ./dev bench
     /usr/bin/python3 tools/plot_bench.py build/bench/sinew.json build/bench/steps.json \\
         --out docs/images
 
 The first file is that of `sinew bench --json`, with meshes of several sizes in it. The second, of
-sinew_bench --benchmark_filter=ConjugateGradients, may be left out. Needs matplotlib (./dev setup
+sinew_bench --benchmark_filter=ConjugateGradients, is optional. Needs matplotlib (./dev setup
 docs). Writes
 
     performance-size.png      ns a tet and a spring of an explicit step, against the mesh's size

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Computes tests/data/c3d4.txt: what CalculiX makes of a small jittered block of its linear
+"""Computes tests/data/c3d4.txt: the solution of CalculiX for a small jittered block of its linear
 tetrahedra (C3D4), linear elastic, held at one end and pulled sideways at single nodes. The test
 forces/linear_tet_test.cpp compares the law neo-hookean with beta = 1 and a cell per tet with it.
 

@@ -1,4 +1,4 @@
-"""tools/count_instructions and tools/bench_tables.py say what they are there to say."""
+"""tools/count_instructions and tools/bench_tables.py report correctly."""
 
 import contextlib
 import importlib.util

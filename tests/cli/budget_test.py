@@ -1,4 +1,4 @@
-"""tools/budget_run.py, short: the liver pulled about with little time a frame. No timing is judged."""
+"""tools/budget_run.py, short: the liver pulled at random with little time a frame. Times are not tested."""
 
 import subprocess
 import sys

@@ -1,4 +1,4 @@
-"""What the command-line tests share: run the binary in a folder of its own and look at the outcome.
+"""Shared by the command-line tests: run the binary in a separate folder and check the result.
 
 Each test is a unittest file; SINEW_BIN names the binary (ctest sets it).
 """

@@ -1,4 +1,4 @@
-"""The shell completions know every command and option of the binary, and print as they stand."""
+"""The shell completions have every command and option of the binary, and are printed unchanged."""
 
 import re
 import subprocess

@@ -1,4 +1,4 @@
-"""tools/check_layers finds what it is there to find."""
+"""tools/check_layers finds violations of the layers."""
 
 import subprocess
 import sys

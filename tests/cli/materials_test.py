@@ -1,4 +1,4 @@
-"""sinew materials: what it prints, and that docs/tissues.md and the completions say the same."""
+"""sinew materials: its output, which docs/tissues.md and the completions must match."""
 
 import json
 import re

@@ -1,6 +1,6 @@
-"""sinew-mesh: surfaces and images become tets, or are told what is wrong with them.
+"""sinew-mesh: fills surfaces and images with tets, or reports their faults.
 
-Skipped where sinew-mesh is not built: it needs CGAL (./dev setup mesher), and CI goes without.
+Skipped if sinew-mesh is not built: it needs CGAL (./dev setup mesher), and CI does not build it.
 """
 
 import gzip

@@ -1,4 +1,4 @@
-"""tools/picture draws a run, and says what is wrong where it cannot."""
+"""tools/picture draws a run, or reports the fault."""
 
 import importlib.util
 import subprocess

@@ -1,5 +1,5 @@
-"""Implicit steps come to rest where rest states are: at any stiffness, bone in fat, with slivers,
-dropped inside out. tools/stiffness_table.py, short, and a cube on the ground."""
+"""Implicit steps come to rest at the rest states: at any stiffness, bone in fat, with slivers,
+dropped inverted. tools/stiffness_table.py, short, and a cube on the ground."""
 
 import json
 import subprocess

@@ -1,4 +1,4 @@
-"""sinew validate: the quick suite holds, its reports are whole, mistakes are named."""
+"""sinew validate: the quick suite holds, its reports are complete, mistakes are named."""
 
 import json
 import unittest

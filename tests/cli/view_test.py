@@ -1,4 +1,4 @@
-"""sinew view: what it prints, what it opens, how it ends. The page has tests of its own."""
+"""sinew view: its output, the files it opens, its end. The page has separate tests."""
 
 import contextlib
 import json

@@ -1,7 +1,7 @@
 """Tests of the page of the live view, which node runs.
 
     page_test.py unit      its parts, in node alone
-    page_test.py built     web/dist/index.html is what web/src gives
+    page_test.py built     web/dist/index.html matches web/src
     page_test.py view      the page in headless Chromium with `sinew view` behind it
     page_test.py tools     ball, obstacles, contacts, springs, cut, comparison of laws
     page_test.py data      plots, downloads, gallery and dropped files

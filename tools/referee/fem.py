@@ -1,9 +1,9 @@
 """A second referee for bars: stable neo-Hookean 20-node hexahedra in numpy.
 
-Where a body folds so sharply that its energy's minimiser has inverted points, ccx, which works with
-C = F^T F, finds no state. This solver works with F as Sinew does, and minimises the energy by
-Newton's method with a line search. On the same mesh with the same integration points it gives what
-ccx gives with the card stable_neo_hookean.
+If a body folds so sharply that the minimiser of its energy has inverted points, ccx, which uses
+C = F^T F, does not converge. This solver uses F as Sinew does, and minimises the energy by Newton's
+method with a line search. On the same mesh with the same integration points it gives the result of
+ccx with the card stable_neo_hookean.
 """
 
 import numpy as np

@@ -10,8 +10,8 @@ BEGIN, END = "<!-- values: written by tools/referee.py -->", "<!-- end of values
 
 @dataclasses.dataclass
 class Value:
-    """One reference value [SI]; error: our estimate of how far it may be off; meshes: what each
-    mesh gave, coarse to fine."""
+    """One reference value [SI]; error: its estimated error; meshes: the value of each mesh, from
+    coarse to fine."""
     variant: str
     quantity: str
     value: float
