@@ -17,7 +17,6 @@ struct Everything {
     model = tissue_box({}, {2, 2, 2});
     for (Index i = 0; i + 1 < 8; i += 2) add_attachment(model, i, 26 - i, 30.0 + i, 0.0, 0.08);
     add_tie(model, 26, model.tets.front(), 40.0);
-    model.cables.push_back({{10, 22}, 50.0, 0.01});
     model.loads.push_back({"push", {13, 14}, Vec3(0.1, -0.2, 0.3)});
     add_obstacle(model, {"ball", Vec3(0.0, 0.08, 0.0), 0.05, 2e4});
     model.pins.push_back({"base", nodes_at(model, 1, -0.05), {}});

@@ -5,7 +5,6 @@
 #include <span>
 #include <vector>
 
-#include "sinew/forces/cables.h"
 #include "sinew/forces/grabs.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/material_terms.h"
@@ -20,7 +19,7 @@ namespace sinew {
 
 // Everything with a potential that is not the material's own or gravity. All else follows: forces,
 // energies, products, the tangent matrix, the stable step, which bodies are joined, and the tests.
-using Terms = TypeList<TieTerm, CableTerm, LoadTerm, ObstacleTerm, GrabTerm>;
+using Terms = TypeList<TieTerm, LoadTerm, ObstacleTerm, GrabTerm>;
 
 // What the loops of a step compute at once: these, with dashpots, viscosity and drag
 // (forces/springs.h, network.h, volume.h, viscosity.h; in single precision forces/packed.h).

@@ -125,11 +125,6 @@ std::uint64_t Model::hash() const {
     for (const double weight : tie.weight) h.value(weight);
     h.value(tie.stiffness);
   }
-  for (const Cable& cable : cables) {
-    for (const Index node : cable.ends) h.value(node);
-    h.value(cable.stiffness);
-    h.value(cable.rest_length);
-  }
   return h.digest();
 }
 

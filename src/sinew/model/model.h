@@ -73,13 +73,6 @@ struct Tie {
   double stiffness = 0.0;  // [N/m] > 0
 };
 
-// A spring between two nodes that pulls and never pushes (forces/cables.h).
-struct Cable {
-  Edge ends = {};
-  double stiffness = 0.0;    // [N/m] > 0
-  double rest_length = 0.0;  // [m] > 0
-};
-
 // The surface of the bodies, body by body: what hard obstacles touch.
 struct Skin {
   std::vector<Index> nodes;         // node ids, rising
@@ -175,7 +168,6 @@ struct Model {
   std::vector<Pin> pins;
   std::vector<Load> loads;
   std::vector<Tie> ties;
-  std::vector<Cable> cables;
   std::vector<Probe> probes;
   std::vector<Obstacle> obstacles;
   std::vector<double> surface_share;  // a third of the rest area of its surface triangles [m2]
