@@ -7,7 +7,6 @@ namespace sinew {
 // One a stepper, each in the file of its steps: verlet_steps.cpp, implicit_steps.cpp ...
 std::unique_ptr<Stepper> verlet_steps(const Model& model, const StepperOptions& options);
 std::unique_ptr<Stepper> implicit_steps(const Model& model, const StepperOptions& options);
-std::unique_ptr<Stepper> midpoint_steps(const Model& model);
 std::unique_ptr<Stepper> rest_steps(const Model& model, const StepperOptions& options);
 
 std::optional<double> Stepper::watch(double, const Controls&, const State&, StepMemory&) {
@@ -23,8 +22,6 @@ std::unique_ptr<Stepper> make_stepper(StepperKind kind, const Model& model,
       return verlet_steps(model, options);
     case StepperKind::implicit:
       return implicit_steps(model, options);
-    case StepperKind::midpoint:
-      return midpoint_steps(model);
     case StepperKind::rest:
       return rest_steps(model, options);
     case StepperKind::automatic:

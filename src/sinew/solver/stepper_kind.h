@@ -11,13 +11,11 @@ enum class StepperKind {
   automatic,  // to be chosen (sim/choose_stepper.h)
   verlet,     // explicit steps (solver/verlet.h)
   implicit,   // implicit steps (solver/implicit.h)
-  midpoint,   // the explicit midpoint rule
   rest,       // rest states, one a frame (solver/static.h)
 };
-constexpr std::array<Word<StepperKind>, 5> words_of(StepperKind) {
+constexpr std::array<Word<StepperKind>, 4> words_of(StepperKind) {
   return {{{StepperKind::verlet, "verlet"},
            {StepperKind::implicit, "implicit"},
-           {StepperKind::midpoint, "midpoint"},
            {StepperKind::rest, "static"},
            {StepperKind::automatic, "auto"}}};
 }
