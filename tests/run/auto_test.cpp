@@ -87,7 +87,8 @@ TEST_F(Auto, TakesVerletForSoftTissueAndImplicitStepsForStiffOnes) {
 TEST_F(Auto, TheChoiceRunsAsIfItHadBeenAskedFor) {
   for (const char* young : {"beam.young=3e3", "beam.young=1e9"}) {
     const Summary chosen = run_of(cantilever, {young});
-    const Summary asked = run_of(cantilever, {young, "stepper=" + chosen.stepper});
+    const Summary asked =
+        run_of(cantilever, {young, "stepper=" + std::string(word_of(chosen.stepper))});
     EXPECT_EQ(chosen.state_hash, asked.state_hash);
     EXPECT_EQ(asked.stepper_reason, "");
   }

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "sinew/base/error.h"
 #include "tests/support/models.h"
@@ -24,16 +26,18 @@ class EveryStepper : public testing::TestWithParam<StepperKind> {};
 
 TEST_P(EveryStepper, TakesStepsFromTheSameStateToTheSameBits) {
   const Model m = hanging_box();
+  const Controls controls = initial_controls(m);
   const auto run = [&] {
     const auto stepper = make_stepper(GetParam(), m, {});
     State state = initial_state(m);
     StepMemory memory;
-    const FirstStep first = stepper->begin(state, memory);
+    const FirstStep first = stepper->begin(controls, state, memory);
     const double h = 0.5 * std::min({first.stable, first.longest, 0.01});
     StepReport last;
     for (int i = 0; i < 3; ++i) {
-      if (const auto stable = stepper->watch(h, state, memory)) EXPECT_GT(*stable, h);
-      last = stepper->step(h, {}, state, memory);
+      const auto stable = stepper->watch(h, controls, state, memory);
+      EXPECT_GT(stable.value_or(no_limit), h);
+      last = stepper->step(h, controls, {}, state, memory);
     }
     EXPECT_NEAR(state.time, 3 * h, 1e-12);
     EXPECT_EQ(state.step, 3);
@@ -45,10 +49,17 @@ TEST_P(EveryStepper, TakesStepsFromTheSameStateToTheSameBits) {
   EXPECT_EQ(run(), run());
 }
 
-INSTANTIATE_TEST_SUITE_P(Steppers, EveryStepper,
-                         testing::Values(StepperKind::verlet, StepperKind::implicit,
-                                         StepperKind::rest),
-                         [](const auto& info) { return std::string(word_of(info.param)); });
+// Every one that has a word: a new one is tested as it is named.
+std::vector<StepperKind> all_steppers() {
+  std::vector<StepperKind> kinds;
+  for (const auto& entry : words_of(StepperKind{})) {
+    if (entry.value != StepperKind::automatic) kinds.push_back(entry.value);
+  }
+  return kinds;
+}
+
+INSTANTIATE_TEST_SUITE_P(Steppers, EveryStepper, testing::ValuesIn(all_steppers()),
+                         [](const auto& test) { return std::string(word_of(test.param)); });
 
 TEST(Stepper, HasToBeChosenFirst) {
   const Model m = hanging_box();
