@@ -71,9 +71,9 @@ struct SelectionDescription {
 };
 
 struct KeyFrameDescription {
-  double time = 0.0;                       // [s]
-  Point move = {0.0, 0.0, 0.0};            // [m]
-  Point turn_degrees = {0.0, 0.0, 0.0};    // the key `turn`: rotation vector
+  double time = 0.0;                                 // [s]
+  Point move = {0.0, 0.0, 0.0};                      // [m]
+  Point turn_degrees = {0.0, 0.0, 0.0};              // the key `turn`: rotation vector
   std::optional<std::array<double, 9>> deform = {};  // of pins only, row by row
 };
 
@@ -102,7 +102,7 @@ struct RegionDescription {
 // One of `mesh`, `shape` and `arrays` says where the mesh comes from.
 struct BodyDescription {
   std::string name = {};
-  std::string mesh = {};  // a file; a relative path starts at SimulationOptions::base
+  std::string mesh = {};   // a file; a relative path starts at SimulationOptions::base
   std::string shape = {};  // beam, box, sphere, ellipsoid, cylinder, hollow_sphere
   std::optional<MeshArrays> arrays = {};
   std::optional<double> mesh_size = {};
@@ -210,9 +210,9 @@ struct ContactDescription {
 
 // What a scene says of its steps.
 struct SteppingDescription {
-  std::string stepper = {};    // verlet, implicit, static, auto
-  std::string scheme = {};     // sdirk2, backward-euler
-  std::string precision = {};  // single, double
+  std::string stepper = {};       // verlet, implicit, static, auto
+  std::string scheme = {};        // sdirk2, backward-euler
+  std::string precision = {};     // single, double
   std::optional<double> dt = {};  // [s]; absent: "auto"
   std::optional<int> substeps = {};
   std::optional<double> safety = {}, tolerance = {}, budget_ms = {};

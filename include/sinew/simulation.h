@@ -75,8 +75,8 @@ struct SimulationOptions {
 
 struct BodyInfo {
   std::string name;
-  IndexRange nodes;  // in positions()
-  IndexRange tets;   // in tets()
+  IndexRange nodes;          // in positions()
+  IndexRange tets;           // in tets()
   double mass = 0.0;         // [kg]
   double rest_volume = 0.0;  // [m3]
 };
@@ -165,11 +165,11 @@ class SINEW_API Simulation {
   // grabs; on pinned nodes of the material alone; not of contacts. Computed by the first call after
   // a change, which costs about as much as a step.
   std::span<const Point> forces() const;
-  std::span<const double> masses() const;       // [kg] (nodes)
-  std::span<const Tet> tets() const;            // node ids (tets)
-  std::span<const Triangle> surface() const;    // node ids, of all bodies
-  std::span<const BodyInfo> bodies() const;     // in the scene's order
-  Index inverted_tets() const;                  // tets that are inside out now
+  std::span<const double> masses() const;        // [kg] (nodes)
+  std::span<const Tet> tets() const;             // node ids (tets)
+  std::span<const Triangle> surface() const;     // node ids, of all bodies
+  std::span<const BodyInfo> bodies() const;      // in the scene's order
+  Index inverted_tets() const;                   // tets that are inside out now
   Index nearest_node(const Point& place) const;  // of the surface
   std::vector<ProbeValue> probes() const;
 

@@ -8,10 +8,10 @@
 
 namespace sinew {
 
-using Index = std::int32_t;             // a node, tet ... of a mesh or model, from 0
-using Point = std::array<double, 3>;    // x, y, z: a place [m], a direction, a force [N] ...
-using Triangle = std::array<Index, 3>;  // three node ids, counter-clockwise seen from outside
-using Tet = std::array<Index, 4>;       // four node ids, positive signed volume
+using Index = std::int32_t;                // a node, tet ... of a mesh or model, from 0
+using Point = std::array<double, 3>;       // x, y, z: a place [m], a direction, a force [N] ...
+using Triangle = std::array<Index, 3>;     // three node ids, counter-clockwise seen from outside
+using Tet = std::array<Index, 4>;          // four node ids, positive signed volume
 using Quaternion = std::array<double, 4>;  // w, x, y, z: a rotation; of any length but 0
 
 // Where a rigid thing is: the point q of its own frame is at center + rotation q.

@@ -19,8 +19,9 @@ inline Point point(const Vec3& v) {
 // `near`.
 Vec3 rotation_vector(const Mat3& rotation, const Vec3& near);
 
-// Writes the path anew: up to `start` [s] as it was, as far back as a step of `last_step` [s] looks;
-// then to `to`, which is a motion about `pivot`, at constant speed until `end` > start; then still.
+// Writes the path anew: up to `start` [s] as it was, as far back as a step of `last_step` [s]
+// looks; then to `to`, which is a motion about `pivot`, at constant speed until `end` > start; then
+// still.
 void lead_path(Path& path, const Vec3& pivot, const KeyFrame& to, double last_step, double start,
                double end);
 

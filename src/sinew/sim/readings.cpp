@@ -44,7 +44,7 @@ Vec3 place_of(const Contact& c, const std::vector<Vec3>& x) {
   return place;
 }
 
-double longest_edge(const Model& model) {
+double longest_surface_edge(const Model& model) {
   double longest = 0.0;
   for (const double l : model.skin.longest_edge) longest = std::max(longest, l);
   return longest;
@@ -107,8 +107,8 @@ void World::find_contacts_now() {
     arena_.run([&] {
       if (!finder_) finder_ = std::make_unique<ContactFinder>(*model_);
       const State& s = run_.state;
-      finder_->find(s.position, s.position, s.time, s.time, touching * longest_edge(*model_),
-                    contacts_);
+      finder_->find(s.position, s.position, s.time, s.time,
+                    touching * longest_surface_edge(*model_), contacts_);
     });
   }
   contacts_of_ = changes_;

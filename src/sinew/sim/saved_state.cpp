@@ -1,5 +1,5 @@
-// What a World keeps of itself in memory: the run as a checkpoint has it, and what the host has hold
-// of.
+// What a World keeps of itself in memory: the run as a checkpoint has it, and what the host has
+// hold of.
 #include <algorithm>
 #include <cstring>
 #include <string>

@@ -33,8 +33,8 @@ constexpr double largest_turn = 1e6;        // [rad]
 Vec3 checked(const Point& p, double most, const char* what, const char* unit) {
   for (const double x : p)
     if (!(std::abs(x) <= most))
-      refuse(fmt::format("{} is [{}, {}, {}]; expected numbers of at most {:g} {}", what, p[0], p[1],
-                         p[2], most, unit),
+      refuse(fmt::format("{} is [{}, {}, {}]; expected numbers of at most {:g} {}", what, p[0],
+                         p[1], p[2], most, unit),
              fmt::format("give x, y, z in {}", unit));
   return sim::vec(p);
 }
@@ -104,7 +104,8 @@ std::vector<std::string> names(const Parts& parts) {
 Simulation Simulation::from_file(const std::filesystem::path& file,
                                  const SimulationOptions& options) {
   const int threads = checked_threads(options.threads);
-  return Simulation(std::make_unique<sim::World>(source_of(load_scene(file, options.set)), threads));
+  return Simulation(
+      std::make_unique<sim::World>(source_of(load_scene(file, options.set)), threads));
 }
 
 Simulation Simulation::from_text(std::string_view toml, const SimulationOptions& options) {
@@ -131,7 +132,8 @@ Simulation::~Simulation() = default;
 
 sim::World& Simulation::any_world() const {
   if (world_) return *world_;
-  refuse("this Simulation was moved from", "assign a new one to it, or use the one it was moved to");
+  refuse("this Simulation was moved from",
+         "assign a new one to it, or use the one it was moved to");
 }
 
 // For what only reads; what changes something locks by itself.
@@ -149,7 +151,8 @@ void Simulation::step(double dt) {
   any_world().step(checked_seconds(dt, longest_step, false, "dt"));
 }
 bool Simulation::advance(double seconds) {
-  return any_world().advance(checked_seconds(seconds, longest_advance, true, "the time to advance"));
+  return any_world().advance(
+      checked_seconds(seconds, longest_advance, true, "the time to advance"));
 }
 void Simulation::interrupt() noexcept {
   if (world_) world_->interrupt();
@@ -316,8 +319,8 @@ GrabHandle Simulation::grab(Index node, double radius) {
     refuse(fmt::format("there is no node {}", node),
            fmt::format("nodes are from 0 to {}; nearest_node() finds one", w.body_nodes() - 1));
   if (!(radius > 0.0 && radius <= farthest))
-    refuse(fmt::format("the radius of the grab is {} m; expected above 0 and at most {:g} m", radius,
-                       farthest),
+    refuse(fmt::format("the radius of the grab is {} m; expected above 0 and at most {:g} m",
+                       radius, farthest),
            "some edges of the mesh: tissue within it is held");
   return w.grab(node, radius);
 }

@@ -19,11 +19,11 @@ namespace {
                               const std::vector<std::string>& known) {
   std::string list;
   for (const std::string& k : known) list += (list.empty() ? "" : ", ") + k;
-  throw Error(ErrorKind::usage,
-              fmt::format("the scene has no {} '{}'{}", kind, std::string(name.substr(0, 64)),
-                          did_you_mean(name, known)),
-              list.empty() ? fmt::format("it has no {} at all", kind)
-                           : fmt::format("it has: {}", list));
+  throw Error(
+      ErrorKind::usage,
+      fmt::format("the scene has no {} '{}'{}", kind, std::string(name.substr(0, 64)),
+                  did_you_mean(name, known)),
+      list.empty() ? fmt::format("it has no {} at all", kind) : fmt::format("it has: {}", list));
 }
 
 template <typename Things>
@@ -48,8 +48,7 @@ std::size_t index_in(const char* kind, std::uint64_t serial, std::uint64_t simul
     throw Error(ErrorKind::usage, fmt::format("this handle names no {}", kind),
                 fmt::format("take it from {}() of the Simulation", kind));
   if (simulation != serial)
-    throw Error(ErrorKind::usage,
-                fmt::format("this handle names a {} of another Simulation", kind),
+    throw Error(ErrorKind::usage, fmt::format("this handle names a {} of another Simulation", kind),
                 "use it with the Simulation that it came from");
   for (std::size_t i = 0; i < things.size(); ++i)
     if (things[i].id == id) return i;

@@ -18,7 +18,7 @@
 namespace sinew::sim {
 namespace {
 
-constexpr double for_ever = 1e9;           // no simulation comes to an end by itself [s]
+constexpr double for_ever = 1e9;              // no simulation comes to an end by itself [s]
 constexpr double between_looks = 1.0 / 60.0;  // between states that are kept to go back to [s]
 constexpr std::size_t most_events = 1000;
 const std::atomic<bool> after_one_step{true};
@@ -36,14 +36,16 @@ Scene without_end(const Scene& scene) {
 }
 
 Index count_inside_out(const Model& model, const std::vector<Vec3>& x) {
-  return static_cast<Index>(std::count_if(model.tets.begin(), model.tets.end(),
-                                          [&](const Tet& t) { return signed_volume(x, t) <= 0.0; }));
+  return static_cast<Index>(std::count_if(model.tets.begin(), model.tets.end(), [&](const Tet& t) {
+    return signed_volume(x, t) <= 0.0;
+  }));
 }
 
 std::vector<std::string> warnings_of(const Scene& scene, const BuildReport& report) {
   std::vector<std::string> out = scene.warnings;
   for (const BuildReport::Body& body : report.bodies)
-    for (const std::string& w : body.warnings) out.push_back(fmt::format("body {}: {}", body.name, w));
+    for (const std::string& w : body.warnings)
+      out.push_back(fmt::format("body {}: {}", body.name, w));
   out.insert(out.end(), report.warnings.begin(), report.warnings.end());
   return out;
 }
@@ -113,8 +115,8 @@ void World::build(Source source) {
 void World::remember() {
   bodies_.clear();
   for (const Body& b : model_->bodies) {
-    BodyInfo info{b.name, {b.nodes.begin, b.nodes.size()}, {b.tets.begin, b.tets.size()}, 0.0,
-                  b.rest_volume};
+    BodyInfo info{
+        b.name, {b.nodes.begin, b.nodes.size()}, {b.tets.begin, b.tets.size()}, 0.0, b.rest_volume};
     for (Index i = b.nodes.begin; i < b.nodes.end; ++i) info.mass += model_->mass[uz(i)];
     bodies_.push_back(std::move(info));
   }
@@ -387,8 +389,7 @@ void World::move(ObstacleHandle handle, const Pose& pose, bool at_once) {
   Obstacle& o = model_->obstacles[i];
   KeyFrame to;
   to.move = pose.center - o.center;
-  to.turn = rotation_vector(pose.turn * o.rotation.transpose(),
-                            o.path.frame(run_.state.time).turn);
+  to.turn = rotation_vector(pose.turn * o.rotation.transpose(), o.path.frame(run_.state.time).turn);
   obstacles_[i].held = true;
   if (!at_once) {
     obstacles_[i].to = to;

@@ -163,7 +163,7 @@ class World {
   std::uint64_t next_id_ = 1;
   std::vector<Mover> obstacles_;  // (Model::obstacles)
   std::vector<Mover> pins_;       // the scene's: (the first of Model::pins)
-  std::vector<Patch> grabs_;        // (Controls::grabs)
+  std::vector<Patch> grabs_;      // (Controls::grabs)
   std::vector<Part> parts_;
 
   bool moves_waiting_ = false;
