@@ -171,7 +171,7 @@ double Simulation::stable_step() const {
   return w.stepping().longest_step(w.run());
 }
 std::string Simulation::stepper() const {
-  return world().run().stepper;
+  return std::string(word_of(world().run().stepper));
 }
 
 // ---- arrays ----

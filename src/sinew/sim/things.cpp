@@ -158,7 +158,7 @@ GrabHandle World::grab(Index node, double radius) {
 
 // The stiffness of every grab: no node becomes so stiff that it shortens an explicit step.
 void World::hold_grabs() {
-  const double stable = run_.stable_step > 0.0 ? run_.stable_step : no_limit;
+  const double stable = run_.memory.stable_step;
   for (std::size_t g = 0; g < grabs_.size(); ++g) {
     Grab& grab = controls_.grabs[g];
     const Body& body = body_of(*model_, grab.nodes.front());

@@ -14,14 +14,13 @@
 #include "sinew/sim/carry_over.h"
 #include "sinew/sim/describe.h"
 #include "sinew/sim/mover.h"
+#include "sinew/sim/stepping_options.h"
 
 namespace sinew::sim {
 namespace {
 
-constexpr double for_ever = 1e9;              // no simulation comes to an end by itself [s]
 constexpr double between_looks = 1.0 / 60.0;  // between states that are kept to go back to [s]
 constexpr std::size_t most_events = 1000;
-const std::atomic<bool> after_one_step{true};
 
 // Tells the simulations of a process apart, so that a handle is known by its own.
 std::uint64_t next_serial() {
@@ -29,9 +28,10 @@ std::uint64_t next_serial() {
   return ++serial;
 }
 
-Scene without_end(const Scene& scene) {
-  Scene out = scene;
-  out.duration = for_ever;
+// No simulation of a host comes to an end by itself.
+SteppingOptions without_end(const Scene& scene) {
+  SteppingOptions out = stepping_options(scene);
+  out.duration = no_limit;
   return out;
 }
 
@@ -92,14 +92,13 @@ World::~World() = default;
 
 void World::build(Source source) {
   source_ = std::move(source);
-  stepped_ = without_end(source_.scene);
   BuildReport report;
-  model_ = std::make_unique<Model>(build_model(stepped_, &report));
+  model_ = std::make_unique<Model>(build_model(source_.scene, &report));
   model_hash_ = model_->hash();
   warnings_ = warnings_of(source_.scene, report);
   run_.state = initial_state(*model_);
   controls_ = initial_controls(*model_);
-  stepping_ = std::make_unique<Stepping>(stepped_, *model_, controls_, run_);
+  stepping_ = std::make_unique<Stepping>(without_end(source_.scene), *model_, controls_, run_);
   for (const SceneObstacle& o : source_.scene.obstacles)
     obstacles_.push_back({next_id_++, o.name, false, {}});
   for (const ScenePin& p : source_.scene.pins) pins_.push_back({next_id_++, p.name, false, {}});
@@ -108,7 +107,7 @@ void World::build(Source source) {
     for (const SceneRegion& region : body.regions) parts_.push_back({body.name, region.name});
   }
   remember();
-  note_stepper("");
+  note_stepper(StepperKind::automatic);
 }
 
 // What is read of the model.
@@ -172,9 +171,9 @@ State World::carry_over(const Model& after, const std::string& replaced) const {
 // Makes everything anew before anything of it is put in place: what cannot be built leaves the
 // simulation as it was.
 void World::rebuild(Source source, const std::string& replaced, bool other_material) {
-  Scene stepped = without_end(source.scene);
+  SteppingOptions options = without_end(source.scene);
   BuildReport report;
-  auto model = std::make_unique<Model>(build_model(stepped, &report));
+  auto model = std::make_unique<Model>(build_model(source.scene, &report));
   const std::uint64_t hash = model->hash();
 
   std::vector<Mover> movers;
@@ -197,20 +196,20 @@ void World::rebuild(Source source, const std::string& replaced, bool other_mater
   run.state = carry_over(*model, replaced);
   if (other_material) {
     calm_softened_bodies(*model_, *model, run.state);
-    run.stepper.clear();
-    run.stepper_reason.clear();
+  } else {
+    options.stepper = run.stepper;  // no other one is chosen
   }
   run.target_step = 0.0;  // to be found anew
   run.steps_left = 0;
-  run.stiff_mode.clear();
-  auto stepping = std::make_unique<Stepping>(stepped, *model, controls_, run);
+  run.memory = {};
+  auto stepping = std::make_unique<Stepping>(options, *model, controls_, run);
 
-  const std::string stepper = run_.stepper;
+  const StepperKind stepper = run_.stepper;
+  if (!other_material) run.stepper_reason = run_.stepper_reason;
   for (Mover& m : movers)
     if (m.id == 0) m.id = next_id_++;
   obstacles_ = std::move(movers);
   source_ = std::move(source);
-  stepped_ = std::move(stepped);
   stepping_ = std::move(stepping);
   finder_.reset();
   scratch_.reset();
@@ -297,20 +296,14 @@ void World::guarded(const F& steps) {
   }
   if (run_.step_reductions > reductions)
     note(EventKind::step_shortened, run_.step_reductions - reductions,
-         fmt::format("the stable step is {:.4g} s", run_.stable_step));
+         fmt::format("the stable step is {:.4g} s", run_.memory.stable_step));
 }
 
 void World::step() {
   const Busy busy(*this);
   guarded([&] {
     start_moves(stepping_->prepare(controls_, run_));
-    const bool rest = run_.stepper == "static";
-    if (rest) {
-      stepping_->take_step(controls_, run_, stepping_->frame_interval());
-      end_frame();
-    } else if (stepping_->advance_frame(controls_, run_, &after_one_step)) {
-      end_frame();
-    }
+    if (stepping_->step(controls_, run_)) end_frame();
   });
   clock_ = run_.state.time;
 }
@@ -424,9 +417,10 @@ void World::note(EventKind kind, std::int64_t count, std::string text) {
   events_.push_back({kind, run_.state.time, count, std::move(text)});
 }
 
-void World::note_stepper(const std::string& before) {
+void World::note_stepper(StepperKind before) {
   if (run_.stepper == before || run_.stepper_reason.empty()) return;
-  note(EventKind::stepper_changed, 1, fmt::format("{}: {}", run_.stepper, run_.stepper_reason));
+  note(EventKind::stepper_changed, 1,
+       fmt::format("{}: {}", word_of(run_.stepper), run_.stepper_reason));
 }
 
 std::vector<Event> World::take_events() {

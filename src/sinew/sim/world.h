@@ -141,14 +141,13 @@ class World {
   void start_moves(double span);
   void set_path(std::size_t obstacle, const Path& path);
   void note(EventKind kind, std::int64_t count, std::string text);
-  void note_stepper(const std::string& before);
+  void note_stepper(StepperKind before);
   void hold_grabs();
   void find_contacts_now();
 
   const std::uint64_t serial_;
   Arena arena_;
   Source source_;
-  Scene stepped_;  // the scene as it is stepped here
   std::unique_ptr<Model> model_;
   std::uint64_t model_hash_ = 0;
   std::unique_ptr<Stepping> stepping_;
