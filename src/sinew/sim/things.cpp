@@ -90,6 +90,10 @@ double weight_per_length(const Model& model, const Vec3& gravity, const Body& bo
   return mass * gravity.norm() / (reach * (high - low).norm());
 }
 
+double grab_energy(const Model& model, const Controls& controls, const State& state) {
+  return GrabTerm::energy({model, controls, state.position, state.time});
+}
+
 }  // namespace
 
 ObstacleHandle World::obstacle(std::string_view name) const {
@@ -178,19 +182,19 @@ void World::hold_grabs() {
 void World::move(GrabHandle handle, const Vec3& target) {
   const Busy busy(*this);
   Grab& grab = controls_.grabs[index_of(handle)];
-  const double before = grab_energy(*model_, controls_, run_.state.position);
+  const double before = grab_energy(*model_, controls_, run_.state);
   grab.target = target;
-  run_.state.energy.work_in += grab_energy(*model_, controls_, run_.state.position) - before;
+  run_.state.energy.work_in += grab_energy(*model_, controls_, run_.state) - before;
   ++changes_;
 }
 
 void World::release(GrabHandle handle) {
   const Busy busy(*this);
   const auto at = static_cast<std::ptrdiff_t>(index_of(handle));
-  const double before = grab_energy(*model_, controls_, run_.state.position);
+  const double before = grab_energy(*model_, controls_, run_.state);
   grabs_.erase(grabs_.begin() + at);
   controls_.grabs.erase(controls_.grabs.begin() + at);
-  run_.state.energy.work_in += grab_energy(*model_, controls_, run_.state.position) - before;
+  run_.state.energy.work_in += grab_energy(*model_, controls_, run_.state) - before;
   ++changes_;
 }
 
