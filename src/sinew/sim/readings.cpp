@@ -39,8 +39,7 @@ void for_each_pushed(const Model& model, const State& state, const Obstacle& o, 
 template <typename Contact>
 Vec3 place_of(const Contact& c, const std::vector<Vec3>& x) {
   Vec3 place = Vec3::Zero();
-  for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a)
-    place += c.weight[a] * x[uz(c.node[a])];
+  for (std::size_t a = 0; a < 4 && c.node[a] >= 0; ++a) place += c.weight[a] * x[uz(c.node[a])];
   return place;
 }
 
@@ -79,7 +78,7 @@ Wrench World::wrench(std::size_t obstacle, const Vec3& about) {
     return sum.wrench();
   }
   for (const ContactPush& p : run_.state.reactions.contacts)
-    if (p.obstacle == static_cast<Index>(obstacle))
+    if (p.id.obstacle() == static_cast<Index>(obstacle))
       sum.add(place_of(p, run_.state.position), -p.push);
   return sum.wrench();
 }
@@ -93,7 +92,7 @@ Wrench World::pin_wrench(std::size_t pin, const Vec3& about) {
     sum.add(run_.state.position[n], force[n] + model_->mass[n] * controls_.gravity);
   }
   for (const ContactPush& p : run_.state.reactions.contacts)
-    for (std::size_t a = 0; a < static_cast<std::size_t>(p.count); ++a)
+    for (std::size_t a = 0; a < p.count(); ++a)
       if (std::find(nodes.begin(), nodes.end(), p.node[a]) != nodes.end())
         sum.add(run_.state.position[uz(p.node[a])], p.weight[a] * p.push);
   return sum.wrench();
@@ -130,7 +129,7 @@ void World::contacts(std::size_t obstacle, std::vector<ContactPoint>& out) {
   }
   find_contacts_now();
   for (const Contact& c : contacts_) {
-    if (c.obstacle != static_cast<Index>(obstacle)) continue;
+    if (c.id.obstacle() != static_cast<Index>(obstacle)) continue;
     const auto most = std::max_element(c.weight.begin(), c.weight.begin() + c.count);
     out.push_back({point(place_of(c, x)), point(c.normal), -c.gap,
                    c.node[static_cast<std::size_t>(most - c.weight.begin())]});
@@ -149,7 +148,7 @@ double World::depth(std::size_t obstacle) {
   }
   find_contacts_now();
   for (const Contact& c : contacts_)
-    if (c.obstacle == static_cast<Index>(obstacle)) deepest = std::max(deepest, -c.gap);
+    if (c.id.obstacle() == static_cast<Index>(obstacle)) deepest = std::max(deepest, -c.gap);
   return deepest;
 }
 

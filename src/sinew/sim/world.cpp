@@ -99,8 +99,7 @@ void World::build(Source source) {
   run_.state = initial_state(*model_);
   controls_ = initial_controls(*model_);
   stepping_ = std::make_unique<Stepping>(without_end(source_.scene), *model_, controls_, run_);
-  for (const SceneObstacle& o : source_.scene.obstacles)
-    obstacles_.push_back({next_id_++, o.name, false, {}});
+  for (const Obstacle& o : model_->obstacles) obstacles_.push_back({next_id_++, o.name, false, {}});
   for (const ScenePin& p : source_.scene.pins) pins_.push_back({next_id_++, p.name, false, {}});
   for (const SceneBody& body : source_.scene.bodies) {
     parts_.push_back({body.name, ""});
