@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "sinew/base/error.h"
-#include "sinew/live/carry_over.h"
+#include "sinew/sim/carry_over.h"
 #include "tests/live/support.h"
 
 namespace sinew::live {

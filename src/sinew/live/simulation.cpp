@@ -9,11 +9,11 @@
 #include "sinew/base/error.h"
 #include "sinew/contact/find.h"
 #include "sinew/forces/springs.h"
-#include "sinew/live/carry_over.h"
 #include "sinew/live/look.h"
 #include "sinew/run/recorder.h"
 #include "sinew/run/summary.h"
 #include "sinew/scene/build.h"
+#include "sinew/sim/carry_over.h"
 #include "sinew/sim/choose_stepper.h"
 #include "sinew/sim/obstacle_reading.h"
 

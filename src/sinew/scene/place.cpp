@@ -47,6 +47,12 @@ fs::path shown(const fs::path& path) {
 }
 
 TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source) {
+  if (const auto given = scene.given.bodies.find(body.mesh); given != scene.given.bodies.end()) {
+    source = fmt::format("the arrays of [body.{}]", body.name);
+    TetMesh mesh = *given->second;
+    if (body.fit) fit_to(mesh.nodes, *body.fit, body.mesh_where);
+    return mesh;
+  }
   const fs::path path = fs::path(scene.base) / body.mesh;
   std::error_code failed;
   const fs::path tetgen = path.string() + ".node";  // TetGen's pair goes by its stem

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -18,6 +20,18 @@
 #include "sinew/solver/stepper_kind.h"
 
 namespace sinew {
+
+struct TetMesh;
+namespace io {
+struct SurfaceSoup;
+}
+
+// Meshes that a scene built in code holds in memory, by what its keys `mesh` say in place of a file
+// name.
+struct GivenMeshes {
+  std::map<std::string, std::shared_ptr<const TetMesh>> bodies;
+  std::map<std::string, std::shared_ptr<const io::SurfaceSoup>> obstacles;
+};
 
 // The shapes that a body may have without a mesh file.
 enum class BodyShape { file, beam, box, sphere, ellipsoid, cylinder, hollow_sphere };
@@ -246,6 +260,7 @@ struct Scene {
   std::vector<std::string> warnings;  // what a user should know about how it was read
   std::string document;  // the whole scene as TOML with every override in it; parses to this scene
   std::string base;      // folder that relative mesh paths start from
+  GivenMeshes given;     // of a scene built in code
 };
 
 // Reads a scene file; relative mesh paths start from its folder. `overrides` are those of --set,

@@ -4,6 +4,7 @@
 #include <cstring>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "sinew/base/error.h"
 #include "sinew/base/hash.h"
@@ -97,49 +98,55 @@ std::uint64_t digest(std::string_view bytes) {
   return h.digest();
 }
 
-[[noreturn]] void reject(const std::filesystem::path& file, const char* why, const char* remedy) {
-  throw Error(ErrorKind::input, why, remedy, Location{file.string()});
+[[noreturn]] void reject(const std::string& name, const char* why, const char* remedy) {
+  throw Error(ErrorKind::input, why, remedy, Location{name});
 }
 
 }  // namespace
 
-void write_checkpoint(const std::filesystem::path& file, const Model& model, const RunState& run) {
+std::string encode_run(std::uint64_t model_hash, const RunState& run) {
   CheckpointWriter w;
   w.bytes = magic;
-  w.value(model.hash());
+  w.value(model_hash);
   visit(w, run);
   w.value(digest(w.bytes));
-  io::write_file(file, w.bytes);
+  return std::move(w.bytes);
 }
 
-RunState read_checkpoint(const std::filesystem::path& file, const Model& model) {
-  const std::string bytes = io::read_file(file);
-  std::string_view view(bytes);
+RunState decode_run(std::string_view bytes, const std::string& name, std::uint64_t model_hash,
+                    std::size_t nodes) {
   constexpr std::size_t frame = magic.size() + 2 * sizeof(std::uint64_t);
-  if (view.size() < frame || view.substr(0, magic.size()) != magic) {
-    reject(file, "not a checkpoint of this version of Sinew", "start the run again");
+  if (bytes.size() < frame || bytes.substr(0, magic.size()) != magic) {
+    reject(name, "not a checkpoint of this version of Sinew", "start the run again");
   }
   std::uint64_t closing = 0;
-  std::memcpy(&closing, view.data() + view.size() - sizeof closing, sizeof closing);
-  view.remove_suffix(sizeof closing);
-  if (closing != digest(view)) reject(file, "the checkpoint is damaged", "start the run again");
-  view.remove_prefix(magic.size());
+  std::memcpy(&closing, bytes.data() + bytes.size() - sizeof closing, sizeof closing);
+  bytes.remove_suffix(sizeof closing);
+  if (closing != digest(bytes)) reject(name, "the checkpoint is damaged", "start the run again");
+  bytes.remove_prefix(magic.size());
 
-  CheckpointReader r{view};
-  std::uint64_t model_hash = 0;
-  r.value(model_hash);
-  if (model_hash != model.hash()) {
-    reject(file, "the checkpoint belongs to another scene or mesh",
+  CheckpointReader r{bytes};
+  std::uint64_t model = 0;
+  r.value(model);
+  if (model != model_hash) {
+    reject(name, "the checkpoint belongs to another scene or mesh",
            "restore the scene and mesh it was made with, or start the run again");
   }
   RunState run;
   visit(r, run);
-  const std::size_t nodes = model.rest_position.size();
   if (!r.good || !r.bytes.empty() || run.state.position.size() != nodes ||
       run.state.half_velocity.size() != nodes) {
-    reject(file, "the checkpoint is damaged", "start the run again");
+    reject(name, "the checkpoint is damaged", "start the run again");
   }
   return run;
+}
+
+void write_checkpoint(const std::filesystem::path& file, const Model& model, const RunState& run) {
+  io::write_file(file, encode_run(model.hash(), run));
+}
+
+RunState read_checkpoint(const std::filesystem::path& file, const Model& model) {
+  return decode_run(io::read_file(file), file.string(), model.hash(), model.rest_position.size());
 }
 
 }  // namespace sinew
