@@ -6,21 +6,17 @@ find_package(TBB REQUIRED)
 find_package(pugixml REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(hwy REQUIRED)
-find_library(XXHASH_LIBRARY xxhash REQUIRED)
-find_path(XXHASH_INCLUDE_DIR xxhash.h REQUIRED)
-add_library(xxhash INTERFACE)
-target_link_libraries(xxhash INTERFACE ${XXHASH_LIBRARY})
-target_include_directories(xxhash SYSTEM INTERFACE ${XXHASH_INCLUDE_DIR})
+find_path(SINEW_XXHASH_INCLUDE xxhash.h REQUIRED)  # compiled in: base/hash.cpp
 find_package(tomlplusplus REQUIRED)
-find_package(nlohmann_json REQUIRED)
-find_package(Boost 1.74 REQUIRED)
 
 add_library(sinew_flags INTERFACE)
 # The same scene gives the same bits: no fused multiply-adds behind our back, no -march=native.
 target_compile_options(sinew_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off
   $<$<BOOL:${SINEW_WERROR}>:-Werror>)
-target_include_directories(sinew_flags INTERFACE ${CMAKE_SOURCE_DIR}/src)
+target_include_directories(sinew_flags INTERFACE
+  ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+target_include_directories(sinew_flags SYSTEM INTERFACE ${SINEW_XXHASH_INCLUDE})
 target_compile_definitions(sinew_flags INTERFACE EIGEN_MPL2_ONLY)
 if(SINEW_SANITIZE)
   target_compile_options(sinew_flags INTERFACE
@@ -33,7 +29,8 @@ endif()
 # preset debug does without both, so that a missing include is seen.
 option(SINEW_FAST_BUILD "Unity builds and precompiled headers" ON)
 set(SINEW_BATCH 8 CACHE STRING "Sources in a batch of a unity build")
-if(SINEW_FAST_BUILD AND CCACHE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+if(SINEW_FAST_BUILD AND CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache"
+   AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-fpch-preprocess)  # ccache needs it to see through precompiled headers
 endif()
 
@@ -55,7 +52,7 @@ endfunction()
 # every room of a lower level.
 set_property(GLOBAL PROPERTY SINEW_ROOMS "")
 function(sinew_room name level)
-  file(GLOB sources CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/sinew/${name}/*.cpp)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/sinew/${name}/*.cpp)
   get_property(rooms GLOBAL PROPERTY SINEW_ROOMS)
   set(below "")
   foreach(room IN LISTS rooms)
@@ -73,6 +70,10 @@ function(sinew_room name level)
     sinew_precompile(sinew_${name} sinew_base)
     set_target_properties(sinew_${name} PROPERTIES UNITY_BUILD ${SINEW_FAST_BUILD}
       UNITY_BUILD_BATCH_SIZE ${SINEW_BATCH})
+    if(BUILD_SHARED_LIBS)  # which shows what is marked SINEW_API alone
+      set_target_properties(sinew_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON
+        CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
+    endif()
   else()
     add_library(sinew_${name} INTERFACE)
     target_link_libraries(sinew_${name} INTERFACE sinew_flags ${below} ${ARGN})
@@ -83,10 +84,10 @@ endfunction()
 # sinew_embed(ROOM FILE SYMBOL): the text of FILE as `extern const char sinew::SYMBOL[]` in the
 # library of ROOM, so that the binary needs no data file.
 function(sinew_embed room file symbol)
-  set(path ${CMAKE_SOURCE_DIR}/${file})
+  set(path ${PROJECT_SOURCE_DIR}/${file})
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})
   file(READ ${path} text)
-  set(source ${CMAKE_BINARY_DIR}/embedded/${symbol}.cpp)
+  set(source ${PROJECT_BINARY_DIR}/embedded/${symbol}.cpp)
   string(CONCAT code "// Generated from ${file}.\n"
     "#pragma GCC diagnostic ignored \"-Woverlength-strings\"\nnamespace sinew {\n"
     "extern const char ${symbol}[];\n"

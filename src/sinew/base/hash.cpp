@@ -1,6 +1,11 @@
 #include "sinew/base/hash.h"
 
 #include <fmt/format.h>
+
+// The code of xxhash comes with its header: no library to link, no symbol that another copy shares.
+#define XXH_STATIC_LINKING_ONLY
+#define XXH_IMPLEMENTATION
+#define XXH_NAMESPACE sinew_
 #include <xxhash.h>
 
 #include <new>
