@@ -11,7 +11,8 @@ What happens to a block follows from its first line:
     ```cpp test          has to compile against the library
     anything else        is left alone
 
-An HTML comment `<!-- test: skip (why) -->` on the line above a block leaves it alone too.
+An HTML comment `<!-- test: skip (why) -->` on the line above a block leaves it alone too. A block
+below `<!-- from: FILE -->` has to be the text of that file of the repository.
 The blocks of one page run in order in one scratch copy of the repository, so that a later one can
 use what an earlier one made. `sinew` is on PATH there; `./dev run ...` and `./dev build` use the
 binary under test, and no other command of ./dev is run from a page. Environment: SINEW_BIN.
@@ -31,6 +32,7 @@ BLOCK_SECONDS = 300
 SCENE_SECONDS = 0.005  # how long a scene of a page is simulated
 
 FENCE = re.compile(r"^(?P<indent> *)(?P<ticks>```+)(?P<tag>[^`]*)$")
+FROM = re.compile(r"<!--\s*from:\s*(\S+)\s*-->")
 SKIP = re.compile(r"<!--\s*test:\s*skip\s*\([^)]+\)\s*-->")
 LINK = re.compile(r"""\]\(\s*<?([^)\s>]+)>?[^)]*\)|(?:src|href)="([^"]+)\"""")
 
@@ -46,11 +48,12 @@ esac
 
 
 class Block:
-    def __init__(self, line, tag, text, skipped):
+    def __init__(self, line, tag, text, skipped, source):
         self.line = line  # of the opening fence, from 1
         self.tag = tag.strip()
         self.text = text
         self.skipped = skipped
+        self.source = source  # the file whose text it shows, or None
 
     def script(self):
         """The shell script in this block; None when it is none."""
@@ -81,8 +84,10 @@ def blocks_of(page):
         match = FENCE.match(line)
         if fence is None and match:
             fence, start, skipped, body = match, number, bool(SKIP.search(previous)), []
+            source = FROM.search(previous)
         elif fence and line.strip() == fence["ticks"]:
-            found.append(Block(start, fence["tag"], "\n".join(body) + "\n", skipped))
+            found.append(Block(start, fence["tag"], "\n".join(body) + "\n", skipped,
+                               source and source[1]))
             fence = None
         elif fence:
             body.append(line.removeprefix(fence["indent"]))
@@ -180,11 +185,16 @@ class Scratch:
             scene.write_text(block.text)
             return True, self.run("sinew", "run", str(scene), "--quiet", "--no-output",
                                   "--set", f"duration={SCENE_SECONDS}")
+        if block.source:
+            there = self.root / block.source
+            same = there.is_file() and there.read_text(encoding="utf-8") == block.text
+            return True, None if same else f"it is not the text of {block.source}"
         if block.tag == "cpp test":
             source = self.root / "snippet.cpp"
             source.write_text(block.text)
             return True, self.run(os.environ.get("CXX", "g++"), "-std=c++20", "-fsyntax-only",
-                                  "-Wall", "-Wextra", "-Isrc", "-I/usr/include/eigen3", str(source))
+                                  "-Wall", "-Wextra", "-Iinclude", "-Isrc",
+                                  "-I/usr/include/eigen3", str(source))
         return False, None
 
 

@@ -1,0 +1,198 @@
+"""Sinew as others take it: the examples are built outside the tree and run.
+
+    install_test.py static    `cmake --install` of this build, moved elsewhere: find_package, pkg-config
+    install_test.py shared    FetchContent and add_subdirectory in a host's build with
+                              BUILD_SHARED_LIBS=ON; that installed: find_package, pkg-config, and
+                              the symbols that libsinew.so shows
+
+Environment (ctest sets it): SINEW_BUILD, SINEW_VERSION, CMAKE, CXX, LAUNCHER.
+"""
+
+import json
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+BUILD = pathlib.Path(os.environ["SINEW_BUILD"])
+CMAKE = os.environ.get("CMAKE", "cmake")
+CXX = os.environ.get("CXX", "g++")
+EXAMPLES = ("hello", "tool_in_a_loop", "own_mesh", "two_worlds")
+NUMBER = r"(-?\d+(?:\.\d+)?)"
+# Other libraries' headers that a program with Sinew does not need.
+INSIDE = ("eigen", "tbb", "fmt", "hwy", "pugixml", "toml", "xxhash", "nlohmann")
+# What our own build adds and a user's may not get.
+OUR_FLAGS = ("-Wconversion", "-Wshadow", "-Werror", "-ffp-contract", "-fvisibility", "EIGEN_")
+
+
+def run(*command, cwd=None, env=None):
+    """What the command prints; SystemExit with it where it fails."""
+    done = subprocess.run([str(c) for c in command], cwd=cwd, text=True, stdout=subprocess.PIPE,
+                          stderr=subprocess.STDOUT, env=dict(os.environ, **(env or {})))
+    if done.returncode:
+        raise SystemExit(f"{' '.join(map(str, command))}\n{done.stdout}exit code {done.returncode}")
+    return done.stdout
+
+
+def check(truth, what):
+    if not truth:
+        raise SystemExit(f"not so: {what}")
+
+
+# ---- what the examples print ----
+
+def check_hello(text):
+    sags = [float(m[1]) for m in re.finditer(rf"^\d\.\d s: +{NUMBER} mm$", text, re.M)]
+    check(len(sags) == 10 and all(-30.0 < s < -1.0 for s in sags), f"the block sags:\n{text}")
+
+
+def check_tool_in_a_loop(text):
+    rows = [[float(x) for x in re.findall(NUMBER, line)] for line in text.splitlines()[1:]]
+    check(len(rows) == 200 and all(len(row) == 9 for row in rows), f"200 rows of 9:\n{text}")
+    pressed, drawn = rows[99], rows[199]
+    check(rows[0][2] == 0.0, f"no force before it touches:\n{text}")
+    check(pressed[2] > 0.05 and pressed[8] > 0, f"pushed up by the tissue:\n{text}")
+    check(drawn[1] < -0.01, f"held back by friction:\n{text}")
+    check(abs(drawn[6]) > 1e-5, f"a torque about z:\n{text}")
+
+
+def check_own_mesh(text):
+    check(text.startswith("117 nodes, 288 tets, 48.0 cm3, 50.9 g\n"), f"the bar's numbers:\n{text}")
+    sags = [float(m[1]) for m in re.finditer(rf"mm: +{NUMBER} mm", text)]
+    check(len(sags) == 5 and sags[0] == 0.0 and sags == sorted(sags, reverse=True) and
+          sags[-1] < -1.0, f"the bar bends:\n{text}")
+
+
+def check_two_worlds(text):
+    check(len(set(re.findall(r": ([0-9a-f]{16})$", text, re.M))) == 2, f"two hashes:\n{text}")
+    check(text.endswith("alone: the same bits\n"), text)
+
+
+def run_examples(find, env=None):
+    """Runs those whose program find(name) gives, and checks what they print."""
+    for name in EXAMPLES:
+        globals()[f"check_{name}"](run(find(name), env=env))
+
+
+# ---- ways to take Sinew ----
+
+def by_find_package(prefix, folder):
+    """The examples as a user builds them: copied away, with find_package alone."""
+    sources, build = folder / "examples", folder / "build"
+    shutil.copytree(ROOT / "examples", sources)
+    run(CMAKE, "-G", "Ninja", "-S", sources, "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}",
+        f"-DCMAKE_CXX_COMPILER={CXX}", "-DCMAKE_EXPORT_COMPILE_COMMANDS=ON",
+        "-DCMAKE_FIND_PACKAGE_NO_PACKAGE_REGISTRY=ON", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
+    for entry in json.loads((build / "compile_commands.json").read_text()):
+        command = entry["command"]
+        check(re.search(r"-std=(c|gnu)\+\+2[0-9a-z]", command), f"C++20 comes along: {command}")
+        for flag in OUR_FLAGS:
+            check(flag not in command, f"{flag} stays ours: {command}")
+        check(str(ROOT) not in command, f"nothing of the source tree: {command}")
+    run(CMAKE, "--build", build)
+    run_examples(lambda name: build / name / name)
+    # The folder of one example alone is a project, too.
+    run(CMAKE, "-G", "Ninja", "-S", sources / "hello", "-B", folder / "one",
+        f"-DCMAKE_PREFIX_PATH={prefix}", f"-DCMAKE_CXX_COMPILER={CXX}")
+
+
+def by_pkg_config(prefix, folder):
+    if not shutil.which("pkg-config"):
+        raise SystemExit("no pkg-config here: ./dev setup test")
+    found = list(prefix.rglob("sinew.pc"))
+    check(len(found) == 1, f"one sinew.pc in {prefix}: {found}")
+    env = {"PKG_CONFIG_PATH": str(found[0].parent)}
+    check(run("pkg-config", "--modversion", "sinew", env=env).strip() ==
+          os.environ["SINEW_VERSION"], "the version of sinew.pc")
+    flags = run("pkg-config", "--cflags", "--libs", "sinew", env=env).split()
+    program = folder / "hello-by-pkg-config"
+    run(CXX, "-std=c++20", ROOT / "examples" / "hello" / "hello.cpp", "-o", program, *flags)
+    libraries = {"LD_LIBRARY_PATH": str(found[0].parent.parent)}
+    check_hello(run(program, env=libraries))
+
+
+def check_headers(prefix, folder):
+    """Each public header compiles alone, without warnings and without other libraries."""
+    include = prefix / "include"
+    for header in sorted((include / "sinew").glob("*.h")):
+        source = folder / f"only_{header.stem}.cpp"
+        source.write_text(f"#include <sinew/{header.name}>\n")
+        run(CXX, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow",
+            "-Wconversion", "-Werror", "-I", include, source)
+        paths = run(CXX, "-std=c++20", "-M", "-I", include, source).replace("\\\n", " ").split()
+        for path in paths:
+            check(not any(part.startswith(INSIDE) for part in pathlib.Path(path).parts[2:-1]),
+                  f"{header.name} needs {path}")
+
+
+def check_symbols(prefix):
+    """libsinew.so shows what the public headers mark SINEW_API, and nothing else."""
+    marked = set()
+    for header in (prefix / "include" / "sinew").glob("*.h"):
+        text = header.read_text()
+        marked |= set(re.findall(r"class SINEW_API (\w+)", text))
+        marked |= set(re.findall(r"^SINEW_API [^;(]*?(\w+)\(", text, re.M))
+    library = next(iter(prefix.rglob("libsinew.so")))
+    shown = run("nm", "-D", "--defined-only", "-C", library).splitlines()
+    check(len(shown) > 20, f"it shows something: {shown}")
+    for line in shown:
+        name = line.split(maxsplit=2)[2]
+        match = re.match(r"(?:(?:typeinfo|typeinfo name|vtable) for )?sinew::(\w+)", name)
+        check(match and match[1] in marked, f"{name} is not of the interface ({sorted(marked)})")
+    dynamic = run("readelf", "-d", library)
+    check("[libsinew.so.0]" in dynamic, "its SONAME")
+
+
+def check_program(prefix):
+    version = run(prefix / "bin" / "sinew", "--version")
+    check(os.environ["SINEW_VERSION"] in version, version)
+    for name in ("bash-completion/completions/sinew", "zsh/site-functions/_sinew",
+                 "fish/vendor_completions.d/sinew.fish"):
+        check((prefix / "share" / name).is_file(), f"share/{name}")
+
+
+def static(folder):
+    run(CMAKE, "--install", BUILD, "--prefix", folder / "first")
+    prefix = folder / "moved" / "sinew"  # the package may lie anywhere
+    prefix.parent.mkdir()
+    (folder / "first").rename(prefix)
+    check_program(prefix)
+    check_headers(prefix, folder)
+    by_find_package(prefix, folder)
+    by_pkg_config(prefix, folder)
+
+
+def shared(folder):
+    host, sources = folder / "host", ROOT / "tests" / "install" / "host"
+    # Plain code: that it is the interface, not the speed, is looked at here.
+    common = ("-G", "Ninja", "-S", sources, f"-DSINEW_SOURCE={ROOT}", "-DBUILD_SHARED_LIBS=ON",
+              f"-DEXAMPLES={ROOT / 'examples'}", f"-DCMAKE_CXX_COMPILER={CXX}",
+              "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0", "-DSINEW_BATCH=16",
+              f"-DCMAKE_CXX_COMPILER_LAUNCHER={os.environ.get('LAUNCHER', '')}")
+    run(CMAKE, *common, "-B", folder / "subdirectory", "-DBY=subdirectory")
+    run(CMAKE, *common, "-B", host, "-DSINEW_INSTALL=ON")
+    run(CMAKE, "--build", host)
+    run_examples(lambda name: host / "examples" / name / name)
+    prefix = folder / "prefix"
+    run(CMAKE, "--install", host, "--prefix", prefix)
+    check_symbols(prefix)
+    by_find_package(prefix, folder)
+    by_pkg_config(prefix, folder)
+
+
+def main(argv):
+    kinds = {"static": static, "shared": shared}
+    if len(argv) != 2 or argv[1] not in kinds:
+        print(__doc__, file=sys.stderr)
+        return 2
+    with tempfile.TemporaryDirectory(prefix="sinew-install-") as folder:
+        kinds[argv[1]](pathlib.Path(folder))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv))
