@@ -74,7 +74,8 @@ TEST(Network, AffineDeformationOfIrregularMeshesIsExact) {
       Workspace workspace(m);
       const double W =
           0.5 * mu * (F.squaredNorm() - 3.0) - mu * (J - 1.0) + 0.5 * kappa * (J - 1.0) * (J - 1.0);
-      EXPECT_NEAR(elastic_energy(test::at(m, mapped(m.rest_position, F)), workspace) / V, W, 1e-10 * W);
+      EXPECT_NEAR(elastic_energy(test::at(m, mapped(m.rest_position, F)), workspace) / V, W,
+                  1e-10 * W);
     }
   }
 }
@@ -99,8 +100,9 @@ TEST(Network, ForcesAreTheNegativeGradientOfTheEnergy) {
             std::vector<Vec3> up(x), down(x);
             up[i][c] += h;
             down[i][c] -= h;
-            const double slope =
-                (elastic_energy(test::at(m, up), workspace) - elastic_energy(test::at(m, down), workspace)) / (2 * h);
+            const double slope = (elastic_energy(test::at(m, up), workspace) -
+                                  elastic_energy(test::at(m, down), workspace)) /
+                                 (2 * h);
             EXPECT_NEAR(f[i][c], -slope, 2e-6 * scale);
           }
         }

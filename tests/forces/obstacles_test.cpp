@@ -148,8 +148,8 @@ TEST(Obstacles, TheListOfTermsHasThem) {
     u[i] = m.inverse_mass[i] > 0.0 ? Vec3(random_point(i) - Vec3::Constant(0.5)) : Vec3::Zero();
   prepare_stiffness(m, s.position, w);
   stiffness_damping_times(test::at(m, s.position, s.time), 1.0, 0.0, u, Tangent::full, w, full);
-  stiffness_damping_times(test::at(m, s.position, s.time), 1.0, 0.0, u, Tangent::only_stiffening,
-                          w, bound);
+  stiffness_damping_times(test::at(m, s.position, s.time), 1.0, 0.0, u, Tangent::only_stiffening, w,
+                          bound);
   double of_full = 0.0, of_bound = 0.0;
   for (std::size_t i = 0; i < u.size(); ++i) {
     of_full += u[i].dot(full[i]);

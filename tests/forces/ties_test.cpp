@@ -76,7 +76,10 @@ TEST(Ties, ForceAndProductAreTheDerivativesOfTheEnergy) {
       std::vector<Vec3> down = x;
       up[i][axis] += step;
       down[i][axis] -= step;
-      EXPECT_NEAR(f[i][axis], -(TieTerm::energy(test::at(m, up)) - TieTerm::energy(test::at(m, down))) / (2.0 * step), 1e-7);
+      EXPECT_NEAR(
+          f[i][axis],
+          -(TieTerm::energy(test::at(m, up)) - TieTerm::energy(test::at(m, down))) / (2.0 * step),
+          1e-7);
     }
   }
   std::vector<Vec3> u(x.size());

@@ -61,8 +61,8 @@ double difference(const Model& m, double inertia, double rate) {
 
   const Field u = noise(m, 1.0, 2);
   Field plain(u.size()), damped(u.size());
-  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, u, Tangent::full, workspace,
-                          plain);
+  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, u, Tangent::full,
+                          workspace, plain);
   stiffness_damping_times({m, initial_controls(m), lag}, 0.0, 1.0, u, Tangent::full, workspace,
                           damped);
   Field4 u4(u.size()), fast(u.size());
@@ -170,8 +170,8 @@ TEST(LinearSolver, ABodyThatNothingHoldsIsSolvedUpToItsMotion) {
                           Tangent::full, workspace, f);
   Field p, back(f.size());
   linear.solve(f, 1e-3, 1000, {}, p);
-  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full, workspace,
-                          back);
+  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full,
+                          workspace, back);
   add(back, -1.0, f);
   EXPECT_LT(std::sqrt(dot(back, back)), 2e-3 * std::sqrt(dot(f, f)));
 }

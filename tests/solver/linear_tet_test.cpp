@@ -116,7 +116,8 @@ TEST(LinearTet, EnergyForceAndHessianProductAreTheElements) {
       const Element expected = element(m, material, x, u);
       compute_forces(m, initial_controls(m), state, workspace);
       EXPECT_LE(distance(workspace.force, expected.force), 1e-10 * largest(expected.force));
-      EXPECT_NEAR(elastic_energy(test::at(m, x), workspace), expected.energy, 1e-10 * expected.energy);
+      EXPECT_NEAR(elastic_energy(test::at(m, x), workspace), expected.energy,
+                  1e-10 * expected.energy);
       std::vector<Vec3> product(x.size());
       prepare_stiffness(m, x, workspace);
       stiffness_damping_times({m, initial_controls(m), x}, 1.0, 0.0, u, Tangent::full, workspace,

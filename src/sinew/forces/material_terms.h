@@ -96,9 +96,9 @@ struct VolumeParts {
     std::vector<Index> nodes;    // each once for each of its tets
     std::vector<Vec3> gradient;  // [m2] (nodes)
   };
-  std::vector<double> push;                    // s of the tets [Pa] (tets)
-  std::vector<double> stiffness;               // d2W/dv2 of their own energies [Pa/m3] (tets)
-  std::vector<std::array<Vec3, 4>> gradient;   // dv/dx of the corners [m2] (tets)
+  std::vector<double> push;                   // s of the tets [Pa] (tets)
+  std::vector<double> stiffness;              // d2W/dv2 of their own energies [Pa/m3] (tets)
+  std::vector<std::array<Vec3, 4>> gradient;  // dv/dx of the corners [m2] (tets)
   std::vector<Cell> cells;
 };
 

@@ -61,7 +61,8 @@ double ObstacleTerm::energy(const Configuration& at) {
     double energy = 0.0;
     for (std::size_t c = 0; c < centers.size() && model.inverse_mass[n] > 0.0; ++c) {
       const Obstacle& o = model.obstacles[c];
-      energy += obstacle_energy(at.x[n] - centers[c], o.radius, o.stiffness * model.surface_share[n]);
+      energy +=
+          obstacle_energy(at.x[n] - centers[c], o.radius, o.stiffness * model.surface_share[n]);
     }
     return energy;
   });

@@ -18,9 +18,9 @@ void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& w
 void stiffness_damping_times(const Configuration& at, double a, double b, std::span<const Vec3> u,
                              Tangent tangent, Workspace& workspace, std::span<Vec3> out);
 
-// What is in (a K + b C) u of node i besides springs, network, volume and the terms' elements: drag,
-// viscosity and, where only what stiffens counts, the most that bounded terms stiffen it. To be
-// called after prepare_outer_product().
+// What is in (a K + b C) u of node i besides springs, network, volume and the terms' elements:
+// drag, viscosity and, where only what stiffens counts, the most that bounded terms stiffen it. To
+// be called after prepare_outer_product().
 void prepare_outer_product(const Model& model, std::span<const Vec3> x, double b,
                            std::span<const Vec3> u, Workspace& workspace);
 Vec3 outer_product(const Model& model, double a, double b, const Vec3& u, Index i, Tangent tangent,

@@ -81,7 +81,9 @@ concept Bounded = requires(const Model& model, Index node) {
 
 // A term whose elements hold a body in its place in the world.
 template <class T>
-concept Holds = requires { requires T::holds; };
+concept Holds = requires {
+  requires T::holds;
+};
 
 template <class... T>
 struct TypeList {};

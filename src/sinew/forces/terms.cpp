@@ -105,8 +105,7 @@ std::vector<Vec3> outer_forces(const Model& model, const Controls& controls, con
 double potential_energy(const Model& model, const Controls& controls, const State& state,
                         Workspace& workspace) {
   const Configuration at = configuration(model, controls, state);
-  return elastic_energy(at, workspace) +
-         (GravityTerm::energy(at) + energy_of(Account::work, at)) +
+  return elastic_energy(at, workspace) + (GravityTerm::energy(at) + energy_of(Account::work, at)) +
          energy_of(Account::contact, at);
 }
 

@@ -96,8 +96,7 @@ Mat6 by_displacements(const BodySpec& body, double tolerance) {
     const Field none(X.size(), Vec3::Zero());
     solver.solve_tangent({held, controls, X}, none, tolerance, u);
     Field f(X.size());
-    stiffness_damping_times({free, controls, X}, 1.0, 0.0, u, Tangent::full, workspace,
-                            f);
+    stiffness_damping_times({free, controls, X}, 1.0, 0.0, u, Tangent::full, workspace, f);
     Mat3 stress = Mat3::Zero();
     for (std::size_t a = 0; a < X.size(); ++a) stress += f[a] * X[a].transpose();
     stress = 0.5 * (stress + stress.transpose().eval()) / free.bodies[0].rest_volume;

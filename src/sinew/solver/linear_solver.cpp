@@ -44,7 +44,8 @@ bool LinearSolver::is_factored(const Objective& objective) const {
          factored_inertia_ == static_cast<float>(objective.inertia);
 }
 
-void LinearSolver::assemble(const Objective& objective, const Field& x, double time, Workspace& workspace) {
+void LinearSolver::assemble(const Objective& objective, const Field& x, double time,
+                            Workspace& workspace) {
   if (!is_factored(objective)) {
     factor(objective, time, workspace);
     prepare_stiffness(objective.model, x, workspace);

@@ -64,8 +64,7 @@ class Subspace {
     prepare_stiffness(model_, x_, solver_.workspace());
     Field ku(x_.size());
     for (std::size_t a = 0; a < block_.size(); ++a) {
-      stiffness_damping_times(at_, 1.0, 0.0, block_[a],
-                              Tangent::full, solver_.workspace(), ku);
+      stiffness_damping_times(at_, 1.0, 0.0, block_[a], Tangent::full, solver_.workspace(), ku);
       const Field mu = mass_times(block_[a]);
       for (std::size_t b = 0; b < block_.size(); ++b) {
         k(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(a)) = dot(block_[b], ku);

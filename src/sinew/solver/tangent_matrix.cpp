@@ -162,15 +162,15 @@ void TangentMatrix::find_far_neighbours() {
   const Controls none;
   for_each_type(Terms{}, [&](auto term) {
     if constexpr (term.isotropic) {
-      term.for_each_element(
-          {model_, none, model_.rest_position}, Tangent::full, [&](const Element& e) {
-            for_each_pair(e, [&](Index i, Index j, double w_i, double w_j) {
-              const double k = -e.block(0, 0) * w_i * w_j;
-              tied.resize(free_.size());
-              tied[uz(i)].emplace_back(j, k);
-              tied[uz(j)].emplace_back(i, k);
-            });
-          });
+      term.for_each_element({model_, none, model_.rest_position}, Tangent::full,
+                            [&](const Element& e) {
+                              for_each_pair(e, [&](Index i, Index j, double w_i, double w_j) {
+                                const double k = -e.block(0, 0) * w_i * w_j;
+                                tied.resize(free_.size());
+                                tied[uz(i)].emplace_back(j, k);
+                                tied[uz(j)].emplace_back(i, k);
+                              });
+                            });
     }
   });
   for (std::size_t i = 0; i < free_.size(); ++i) {

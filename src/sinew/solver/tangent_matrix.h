@@ -18,10 +18,10 @@ namespace sinew {
 //   (K u)_i = D_i u_i + sum_j B_ij (u_i - u_j) + sum_j k_ij (u_i - u_j)
 //             + sum_c G_ci (kappa_c / V_c) sum_j G_cj . u_j + sum_p w_pi T_p sum_j w_pj u_j
 //
-// D: inertia, drag, elements of terms at one node. B: springs, dashpots, network and what a tet does between the nodes
-// of its edges. k: the network between nodes that share no edge. G_c: the gradient of a cell's
-// volume. T_p, w_p: block and weights of a contact or of a term's element between nodes. Differences of u, so that moving all nodes
-// alike feels none of the rounding of B.
+// D: inertia, drag, elements of terms at one node. B: springs, dashpots, network and what a tet
+// does between the nodes of its edges. k: the network between nodes that share no edge. G_c: the
+// gradient of a cell's volume. T_p, w_p: block and weights of a contact or of a term's element
+// between nodes. Differences of u, so that moving all nodes alike feels none of the rounding of B.
 //
 // In single precision: a Newton direction needs few digits, and half the bytes are half the time.
 // The force that Newton's method brings to zero is in double precision.
@@ -29,8 +29,8 @@ class TangentMatrix {
  public:
   explicit TangentMatrix(const Model& model);  // which entries there are
 
-  // Their values at positions x and `time` for objective.model: the constructor's, or one that differs from it
-  // in stiffness only. Expects what prepare_stiffness leaves in the workspace at x.
+  // Their values at positions x and `time` for objective.model: the constructor's, or one that
+  // differs from it in stiffness only. Expects what prepare_stiffness leaves in the workspace at x.
   void assemble(const Objective& objective, const Field& x, double time,
                 const Workspace& workspace);
 
@@ -115,7 +115,7 @@ class TangentMatrix {
   std::vector<Index> joint_node_;
   std::vector<float> joint_weight_;
   std::vector<Mat3> joint_diagonal_;  // what they add to the diagonal [N/m] (nodes); empty: nothing
-  std::vector<Mat3> pull_;  // what elements of one node add [N/m] (nodes); empty: nothing
+  std::vector<Mat3> pull_;            // what elements of one node add [N/m] (nodes); empty: nothing
 
   // Cells.
   std::vector<Index> cell_start_, cell_node_;  // nodes of its tets (cells + 1)
