@@ -84,11 +84,12 @@ void AnswerToLyingBeams(benchmark::State& state) {
   const Model model = build_model(parse_scene(text, "beams.toml", "."));
   Workspace workspace(model);
   State s = initial_state(model);
-  const double h = 0.8 * find_stable_step(model, s.position, workspace).step;
-  while (s.time < 1.0) verlet_step(model, h, s, workspace);
+  const double h =
+      0.8 * find_stable_step(model, initial_controls(model), s.position, workspace).step;
+  while (s.time < 1.0) verlet_step(model, initial_controls(model), h, s, workspace);
 
   // The next step up to the answer.
-  compute_forces(model, s, workspace);
+  compute_forces(model, initial_controls(model), s, workspace);
   const std::vector<Vec3> before = s.position;
   for (std::size_t i = 0; i < s.position.size(); ++i) {
     s.half_velocity[i] += (h * model.inverse_mass[i]) * workspace.force[i];

@@ -34,7 +34,8 @@ constexpr double step = 1e-4;  // [s], well below the stable one
 struct Bar {
   explicit Bar(const Material& material) : model(made(material)), workspace(model) {
     state = initial_state(model);
-    for (int i = 0; i < 10; ++i) verlet_step(model, step, state, workspace);
+    for (int i = 0; i < 10; ++i)
+      verlet_step(model, initial_controls(model), step, state, workspace);
   }
 
   static Model made(const Material& material) {
@@ -100,16 +101,18 @@ int main() {
     count(name, counted, tets, "tet", call);
   };
   Workspace& w = bar.workspace;
-  const auto verlet = [](Bar& b) { verlet_step(b.model, step, b.state, b.workspace); };
+  const auto verlet = [](Bar& b) {
+    verlet_step(b.model, initial_controls(b.model), step, b.state, b.workspace);
+  };
   count_tets("double_volumes", counted_double_volumes,
              [&] { compute_volume_pressures(m, bar.state.position, w); });
   count_tets("double_step", counted_double_step, [&] { verlet(bar); });
 
   TangentMatrix matrix(m);
-  const Objective objective{.model = m, .inertia = 3600.0};
+  const Objective objective{.model = m, .controls = initial_controls(m), .inertia = 3600.0};
   prepare_stiffness(m, bar.state.position, w);
   count_tets("tangent_assembly", counted_tangent_assembly,
-             [&] { matrix.assemble(objective, bar.state.position, w); });
+             [&] { matrix.assemble(objective, bar.state.position, 0.0, w); });
   Field4 u(m.rest_position.size()), out(u);
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = Float4(m.rest_position[i]);
   count_tets("tangent_product", counted_tangent_product, [&] { matrix.times(u, out); });

@@ -26,14 +26,14 @@ double loss(const Model& model, const State& state) {
   Workspace plain(model);
   Workspace packed(model);
   packed.packed = std::make_shared<PackedForces>(model);
-  compute_forces(model, state, plain);
-  compute_forces(model, state, packed);
+  compute_forces(model, initial_controls(model), state, plain);
+  compute_forces(model, initial_controls(model), state, packed);
   double difference = 0.0;
   double weight = 0.0;
   for (std::size_t i = 0; i < model.mass.size(); ++i) {
     if (model.inverse_mass[i] == 0.0) continue;
     difference += (packed.force[i] - plain.force[i]).squaredNorm();
-    weight += (model.mass[i] * model.gravity).squaredNorm();
+    weight += (model.mass[i] * model.start_gravity).squaredNorm();
   }
   return std::sqrt(difference / weight);
 }
@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
       State state = initial_state(model);
       StaticOptions options;
       options.tolerance = 1e-6;
-      StaticSolver(model).solve(0.0, options, state);
+      StaticSolver(model).solve(initial_controls(model), 0.0, options, state);
       double way = 0.0;
       for (std::size_t i = 0; i < state.position.size(); ++i) {
         way = std::max(way, (state.position[i] - model.rest_position[i]).norm());

@@ -46,10 +46,11 @@ void VerletStep(benchmark::State& state) {
   const Model model = model_of(state.range(0));
   Workspace workspace(model);
   State s = initial_state(model);
-  const double h = 0.5 * find_stable_step(model, s.position, workspace).step;
-  for (int i = 0; i < 100; ++i) verlet_step(model, h, s, workspace);
+  const double h =
+      0.5 * find_stable_step(model, initial_controls(model), s.position, workspace).step;
+  for (int i = 0; i < 100; ++i) verlet_step(model, initial_controls(model), h, s, workspace);
   state.SetLabel("state after 100 steps " + hex(s.hash()));
-  for (auto _ : state) verlet_step(model, h, s, workspace);
+  for (auto _ : state) verlet_step(model, initial_controls(model), h, s, workspace);
   per_spring(state, model);
 }
 
@@ -62,7 +63,7 @@ void ImplicitStep(benchmark::State& state) {
   ImplicitOptions options;
   options.tolerance = std::pow(10.0, -static_cast<double>(state.range(1)));
   ImplicitStepper stepper(model);
-  stepper.prepare(1.0 / 60.0, options);
+  stepper.prepare(1.0 / 60.0, initial_controls(model), options);
   const State start = initial_state(model);
   ImplicitReport sum;
   State s;
@@ -70,7 +71,7 @@ void ImplicitStep(benchmark::State& state) {
     sum = {};
     s = start;
     for (int i = 0; i < 10; ++i) {
-      const ImplicitReport step = stepper.step(1.0 / 60.0, options, s);
+      const ImplicitReport step = stepper.step(1.0 / 60.0, initial_controls(model), options, s);
       sum.newton += step.newton;
       sum.products += step.products;
     }
@@ -96,7 +97,7 @@ void StaticSolve(benchmark::State& state) {
   State s;
   for (auto _ : state) {
     s = initial_state(model);
-    report = solver.solve(0.0, options, s);
+    report = solver.solve(initial_controls(model), 0.0, options, s);
   }
   state.SetLabel("state " + hex(s.hash()));
   state.counters["newton"] = report.newton;
@@ -115,10 +116,11 @@ void ConjugateGradients(benchmark::State& state) {
                        fmt::format("beam.poisson={}", 1e-3 * static_cast<double>(state.range(1)))});
   Workspace workspace(model);
   LinearSolver solver(model);
-  const Objective objective{.model = model, .inertia = step ? 3600.0 : 0.0};
+  const Objective objective{
+      .model = model, .controls = initial_controls(model), .inertia = step ? 3600.0 : 0.0};
   prepare_stiffness(model, model.rest_position, workspace);
-  solver.assemble(objective, model.rest_position, workspace);
-  const Field weight = outer_forces(model, initial_state(model));
+  solver.assemble(objective, model.rest_position, 0.0, workspace);
+  const Field weight = outer_forces(model, initial_controls(model), initial_state(model));
   Field p;
   int products = 0;
   for (auto _ : state) products = solver.solve(weight, 1e-3, 1000, {}, p);
@@ -132,7 +134,7 @@ void ImplicitFrame(benchmark::State& state) {
   ImplicitStepper stepper(model);
   ImplicitOptions options;
   options.tolerance = 0.01;
-  stepper.prepare(1.0 / 60.0, options);
+  stepper.prepare(1.0 / 60.0, initial_controls(model), options);
   const State start = initial_state(model);
   ImplicitReport sum;
   State s;
@@ -142,7 +144,7 @@ void ImplicitFrame(benchmark::State& state) {
       sum = {};
       s = start;
     }
-    const ImplicitReport step = stepper.step(1.0 / 60.0, options, s);
+    const ImplicitReport step = stepper.step(1.0 / 60.0, initial_controls(model), options, s);
     sum.newton += step.newton;
     sum.products += step.products;
   }
@@ -165,7 +167,8 @@ void StableStepSearch(benchmark::State& state) {
   Workspace workspace(model);
   int products = 0;
   for (auto _ : state) {
-    products = find_stable_step(model, model.rest_position, workspace).iterations;
+    products =
+        find_stable_step(model, initial_controls(model), model.rest_position, workspace).iterations;
   }
   state.counters["products"] = products;
 }

@@ -133,10 +133,10 @@ std::string format_table(const Summary& s) {
                             grouped(b.tets), mass_text(b.mass)));
     row("law", fmt::format("{}, {} springs", b.laws, grouped(b.springs)));
   }
-  if (s.stepper == "static") {
+  if (s.stepper == StepperKind::rest) {
     row("rest", fmt::format("residual {:.2g} after {} Newton steps, {} products", s.residual,
                             grouped(s.newton_steps), grouped(s.products)));
-  } else if (s.stepper == "implicit") {
+  } else if (s.stepper == StepperKind::implicit) {
     row("step",
         fmt::format("{} (implicit), {} steps, {} Newton steps, {} products, residual {:.2g}",
                     scaled(s.dt, "s"), grouped(s.steps), grouped(s.newton_steps),

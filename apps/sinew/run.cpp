@@ -80,8 +80,9 @@ int supervise(const Arguments& a, const std::string& title, fs::path out, const 
   options.force = a.force;
   options.stop = &stop_requested;
   options.on_progress = [&](const Progress& p) { bar.update(p); };
-  options.on_stepper = [&](const std::string& stepper, const std::string& reason) {
-    if (!a.quiet && !a.json) fmt::print("stepper = \"auto\" takes {} ({})\n", stepper, reason);
+  options.on_stepper = [&](StepperKind stepper, const std::string& reason) {
+    if (!a.quiet && !a.json)
+      fmt::print("stepper = \"auto\" takes {} ({})\n", word_of(stepper), reason);
     std::fflush(stdout);
   };
   options.on_warning = [&](const std::string& text) {

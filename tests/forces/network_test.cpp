@@ -13,6 +13,7 @@
 #include "tests/support/fields.h"
 #include "tests/support/models.h"
 #include "tests/support/tangent.h"
+#include "tests/support/terms.h"
 
 namespace sinew {
 namespace {
@@ -27,7 +28,7 @@ Model irregular_box(const Material& material, int cells = 2, double jitter = 0.2
   spec.materials = {material};
   spec.regions = {"all"};
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, spec);
   finish(m);
   return m;
@@ -37,7 +38,7 @@ std::vector<Vec3> forces(const Model& m, const std::vector<Vec3>& x) {
   Workspace workspace(m);
   State state = initial_state(m);
   state.position = x;
-  compute_forces(m, state, workspace);
+  compute_forces(m, initial_controls(m), state, workspace);
   return workspace.force;
 }
 
@@ -73,7 +74,8 @@ TEST(Network, AffineDeformationOfIrregularMeshesIsExact) {
       Workspace workspace(m);
       const double W =
           0.5 * mu * (F.squaredNorm() - 3.0) - mu * (J - 1.0) + 0.5 * kappa * (J - 1.0) * (J - 1.0);
-      EXPECT_NEAR(elastic_energy(m, mapped(m.rest_position, F), workspace) / V, W, 1e-10 * W);
+      EXPECT_NEAR(elastic_energy(test::at(m, mapped(m.rest_position, F)), workspace) / V, W,
+                  1e-10 * W);
     }
   }
 }
@@ -98,8 +100,9 @@ TEST(Network, ForcesAreTheNegativeGradientOfTheEnergy) {
             std::vector<Vec3> up(x), down(x);
             up[i][c] += h;
             down[i][c] -= h;
-            const double slope =
-                (elastic_energy(m, up, workspace) - elastic_energy(m, down, workspace)) / (2 * h);
+            const double slope = (elastic_energy(test::at(m, up), workspace) -
+                                  elastic_energy(test::at(m, down), workspace)) /
+                                 (2 * h);
             EXPECT_NEAR(f[i][c], -slope, 2e-6 * scale);
           }
         }
@@ -163,7 +166,7 @@ TEST(Network, BordersBetweenMaterialsAreAtRest) {
   spec.regions = {"soft", "hard", "classic"};
   for (Index t = 0; t < spec.mesh.tet_count(); ++t) spec.tet_region.push_back(t % 3);
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, spec);
   finish(m);
   for (const Vec3& f : forces(m, m.rest_position)) {
@@ -208,13 +211,13 @@ TEST(Network, PressureIsMinusTheMeanStress) {
     const Model m = irregular_box(material);
     Workspace workspace(m);
     State state = initial_state(m);
-    compute_forces(m, state, workspace);
+    compute_forces(m, initial_controls(m), state, workspace);
     for (const double p : measure_pressure(m, state.position, workspace)) {
       EXPECT_NEAR(p, 0.0, 1e-9 * material.young);
     }
     const double strain = 1e-6;
     state.position = mapped(m.rest_position, (1.0 - strain) * Mat3::Identity());
-    compute_forces(m, state, workspace);
+    compute_forces(m, initial_controls(m), state, workspace);
     const double bulk = material.young / (3.0 * (1.0 - 2.0 * material.poisson));
     for (const double p : measure_pressure(m, state.position, workspace)) {
       EXPECT_NEAR(p, 3.0 * strain * bulk, 1e-4 * strain * bulk);

@@ -6,6 +6,7 @@
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "tests/support/models.h"
+#include "tests/support/terms.h"
 
 namespace sinew {
 namespace {
@@ -63,7 +64,7 @@ TEST(ObstacleLaw, OnlyStiffeningIsPositiveSemidefinite) {
 // A box with its floor pinned and two spheres in its top and side.
 Model pressed_box() {
   Model m = test::tissue_box({.law = Law::lloyd, .young = 1e4}, {3, 3, 3});
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   m.pins = {{"floor", test::nodes_at(m, 1, -0.05), {}}};
   Path path;
   path.keys = {{1.0, Vec3(0, -0.02, 0), Vec3::Zero()}};
@@ -90,7 +91,7 @@ TEST(Obstacles, ForceAndProductAreTheEnergysDerivatives) {
     x[i] += 0.004 * (random_point(i) - Vec3::Constant(0.5));
   const auto force = [&](const std::vector<Vec3>& at) {
     std::vector<Vec3> f(at.size(), Vec3::Zero());
-    add_obstacle_forces(m, at, time, f);
+    ObstacleTerm::add_forces(test::at(m, at, time), f);
     return f;
   };
   const std::vector<Vec3> f = force(x);
@@ -104,9 +105,9 @@ TEST(Obstacles, ForceAndProductAreTheEnergysDerivatives) {
     for (int c = 0; c < 3; ++c) {
       const double at = x[i][c];
       x[i][c] = at + h;
-      const double up = obstacle_energy(m, x, time);
+      const double up = ObstacleTerm::energy(test::at(m, x, time));
       x[i][c] = at - h;
-      const double down = obstacle_energy(m, x, time);
+      const double down = ObstacleTerm::energy(test::at(m, x, time));
       x[i][c] = at;
       EXPECT_NEAR(-(up - down) / (2 * h), f[i][c], 1e-6 * 1e8 * 1e-3 * 0.01);
     }
@@ -119,7 +120,7 @@ TEST(Obstacles, ForceAndProductAreTheEnergysDerivatives) {
     there[i] += h * u[i];
     back[i] -= h * u[i];
   }
-  add_obstacle_stiffness_times(m, x, obstacle_centers(m, time), 2.0, u, false, product);
+  add_stiffness_times(ObstacleTerm{}, test::at(m, x, time), Tangent::full, 2.0, u, product);
   const std::vector<Vec3> f_there = force(there), f_back = force(back);
   for (std::size_t i = 0; i < x.size(); ++i)
     EXPECT_LT((product[i] + 2.0 * (f_there[i] - f_back[i]) / (2 * h)).norm(), 1e-6 * 2e8 * 1e-3);
@@ -131,22 +132,24 @@ TEST(Obstacles, TheListOfTermsHasThem) {
   State s = initial_state(m);
   s.time = 0.5;
   std::vector<Vec3> without(m.rest_position.size(), Vec3::Zero());
-  add_obstacle_forces(m, s.position, s.time, without);
-  compute_forces(m, s, w);  // at rest: nothing else acts
+  ObstacleTerm::add_forces(test::at(m, s.position, s.time), without);
+  compute_forces(m, initial_controls(m), s, w);  // at rest: nothing else acts
   for (std::size_t i = 0; i < without.size(); ++i)
     if (m.inverse_mass[i] > 0.0) {
       EXPECT_LT((w.force[i] - without[i]).norm(), 1e-12);
     }
-  EXPECT_EQ(measure_energies(m, s, w).contact, obstacle_energy(m, s.position, s.time));
-  EXPECT_GT(obstacle_energy(m, s.position, s.time), 0.0);
+  EXPECT_EQ(measure_energies(m, initial_controls(m), s, w).contact,
+            ObstacleTerm::energy(test::at(m, s.position, s.time)));
+  EXPECT_GT(ObstacleTerm::energy(test::at(m, s.position, s.time)), 0.0);
 
   // The tangent of the stable step bounds the true one.
   std::vector<Vec3> u(without.size()), full(u.size()), bound(u.size());
   for (std::size_t i = 0; i < u.size(); ++i)
     u[i] = m.inverse_mass[i] > 0.0 ? Vec3(random_point(i) - Vec3::Constant(0.5)) : Vec3::Zero();
   prepare_stiffness(m, s.position, w);
-  stiffness_damping_times(m, s.position, 1.0, 0.0, u, Tangent::full, w, full);
-  stiffness_damping_times(m, s.position, 1.0, 0.0, u, Tangent::only_stiffening, w, bound);
+  stiffness_damping_times(test::at(m, s.position, s.time), 1.0, 0.0, u, Tangent::full, w, full);
+  stiffness_damping_times(test::at(m, s.position, s.time), 1.0, 0.0, u, Tangent::only_stiffening, w,
+                          bound);
   double of_full = 0.0, of_bound = 0.0;
   for (std::size_t i = 0; i < u.size(); ++i) {
     of_full += u[i].dot(full[i]);
@@ -167,7 +170,7 @@ TEST(Obstacles, ReadingsAreTheReaction) {
   EXPECT_NEAR(readings[1].depth,
               0.05 - (Vec3(0.09, 0, 0.01) - Vec3(0.05, 0.0166667, 0.0166667)).norm(), 1e-6);
   std::vector<Vec3> f(m.rest_position.size(), Vec3::Zero());
-  add_obstacle_forces(m, m.rest_position, time, f);
+  ObstacleTerm::add_forces(test::at(m, m.rest_position, time), f);
   Vec3 sum = readings[0].force + readings[1].force;
   for (const Vec3& v : f) sum += v;
   EXPECT_LT(sum.norm(), 1e-9);

@@ -24,8 +24,9 @@ double mismatch(const Model& m, const std::vector<Vec3>& x, double a, double b) 
     if (m.inverse_mass[i] > 0.0) u[i] = Vec3(std::sin(t), std::sin(1.7 * t), std::cos(2.3 * t));
   }
   prepare_stiffness(m, x, w);
-  stiffness_damping_times(m, x, a, b, u, Tangent::only_stiffening, w, plain);
-  auto product = PackedStiffness::at(m, x, w);
+  stiffness_damping_times({m, initial_controls(m), x}, a, b, u, Tangent::only_stiffening, w, plain);
+  const Controls controls = initial_controls(m);
+  auto product = PackedStiffness::at(m, controls, x, w);
   if (!product) return 1.0;
   product->times(a, b, u, packed);
   const double size = norm(plain);
@@ -83,14 +84,15 @@ TEST(PackedStiffness, LeavesClassicSpringsToThePlainProduct) {
   finish(springs);
   Workspace of_springs(springs);
   of_springs.packed = std::make_shared<PackedForces>(springs);
-  EXPECT_FALSE(PackedStiffness::at(springs, springs.rest_position, of_springs));
+  EXPECT_FALSE(
+      PackedStiffness::at(springs, initial_controls(springs), springs.rest_position, of_springs));
 
   Model m = test::tissue_box(Material{}, {2, 2, 2});
   finish(m);
   Workspace w(m);
-  EXPECT_FALSE(PackedStiffness::at(m, m.rest_position, w));
+  EXPECT_FALSE(PackedStiffness::at(m, initial_controls(m), m.rest_position, w));
   w.packed = std::make_shared<PackedForces>(m);
-  EXPECT_TRUE(PackedStiffness::at(m, m.rest_position, w));
+  EXPECT_TRUE(PackedStiffness::at(m, initial_controls(m), m.rest_position, w));
 }
 
 TEST(PackedStiffness, OfNoMotionIsZero) {
@@ -100,7 +102,7 @@ TEST(PackedStiffness, OfNoMotionIsZero) {
   w.packed = std::make_shared<PackedForces>(m);
   const std::vector<Vec3> u(m.rest_position.size(), Vec3::Zero());
   std::vector<Vec3> out(u.size(), Vec3::Ones());
-  PackedStiffness::at(m, m.rest_position, w)->times(1.0, 1.0, u, out);
+  PackedStiffness::at(m, initial_controls(m), m.rest_position, w)->times(1.0, 1.0, u, out);
   EXPECT_EQ(norm(out), 0.0);
 }
 

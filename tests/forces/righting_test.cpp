@@ -14,7 +14,7 @@ namespace {
 
 Model free_box() {
   Model m = test::tissue_box(Material{}, {3, 3, 3});
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   finish(m);
   return m;
 }
@@ -23,13 +23,13 @@ TEST(Righting, ABodyIsTangledWhenManyTetsAreInsideOut) {
   const Model m = free_box();
   Workspace workspace(m);
   State state = initial_state(m);
-  compute_forces(m, state, workspace);
+  compute_forces(m, initial_controls(m), state, workspace);
   EXPECT_EQ(find_tangled(m, workspace), 0);
   state.position[0] = Vec3::Zero();  // a corner pushed through its own tets, not through others
-  compute_forces(m, state, workspace);
+  compute_forces(m, initial_controls(m), state, workspace);
   EXPECT_EQ(find_tangled(m, workspace), 0);
   for (Vec3& x : state.position) x.z() = 0.0;
-  compute_forces(m, state, workspace);
+  compute_forces(m, initial_controls(m), state, workspace);
   EXPECT_EQ(find_tangled(m, workspace), 1);
   EXPECT_EQ(workspace.tangled[0], 1);
 }
@@ -55,7 +55,7 @@ TEST(Righting, TheForcesKeepMomentumAndAngularMomentum) {
   Workspace workspace(m);
   State state = initial_state(m);
   for (std::size_t i = 0; i < state.position.size(); ++i) state.position[i] = random_point(i);
-  compute_forces(m, state, workspace);
+  compute_forces(m, initial_controls(m), state, workspace);
   ASSERT_EQ(find_tangled(m, workspace), 1);
   right_tangled_bodies(m, state, 1e-4, workspace);
   Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
@@ -87,7 +87,7 @@ TEST(Righting, WhatFliesApartIsCaught) {
   for (int step = 0; step < 500; ++step) {
     workspace.tangled = {1};
     std::fill(workspace.force.begin(), workspace.force.end(), Vec3::Zero());
-    compute_forces(m, state, workspace);
+    compute_forces(m, initial_controls(m), state, workspace);
     workspace.tangled = {1};
     right_tangled_bodies(m, state, h, workspace);
     const std::vector<Vec3> goal = rest_shape_at(m, m.bodies[0], state.position);

@@ -7,6 +7,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/model/state.h"
 #include "tests/support/models.h"
+#include "tests/support/terms.h"
 
 namespace sinew {
 namespace {
@@ -40,16 +41,16 @@ TEST(Ties, PullNothingThatHasOnlyMovedTurnedOrBeenStretchedAsAWhole) {
   std::vector<Vec3> x = m.rest_position;
   for (Vec3& p : x) p = map * p + Vec3(3, -2, 5);
   std::vector<Vec3> f(x.size(), Vec3::Zero());
-  add_tie_forces(m, x, f);
+  TieTerm::add_forces(test::at(m, x), f);
   for (const Vec3& force : f) EXPECT_LT(force.norm(), 1e-12);
-  EXPECT_LT(tie_energy(m, x), 1e-24);
+  EXPECT_LT(TieTerm::energy(test::at(m, x)), 1e-24);
 }
 
 TEST(Ties, KeepMomentumAndAngularMomentum) {
   const Model m = tied();
   const std::vector<Vec3> x = displaced(m, 0.3);
   std::vector<Vec3> f(x.size(), Vec3::Zero());
-  add_tie_forces(m, x, f);
+  TieTerm::add_forces(test::at(m, x), f);
   Vec3 force = Vec3::Zero();
   Vec3 torque = Vec3::Zero();
   double size = 0.0;
@@ -67,7 +68,7 @@ TEST(Ties, ForceAndProductAreTheDerivativesOfTheEnergy) {
   const Model m = tied();
   const std::vector<Vec3> x = displaced(m, 0.3);
   std::vector<Vec3> f(x.size(), Vec3::Zero());
-  add_tie_forces(m, x, f);
+  TieTerm::add_forces(test::at(m, x), f);
   const double step = 1e-5;
   for (std::size_t i = 0; i < x.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) {
@@ -75,7 +76,10 @@ TEST(Ties, ForceAndProductAreTheDerivativesOfTheEnergy) {
       std::vector<Vec3> down = x;
       up[i][axis] += step;
       down[i][axis] -= step;
-      EXPECT_NEAR(f[i][axis], -(tie_energy(m, up) - tie_energy(m, down)) / (2.0 * step), 1e-7);
+      EXPECT_NEAR(
+          f[i][axis],
+          -(TieTerm::energy(test::at(m, up)) - TieTerm::energy(test::at(m, down))) / (2.0 * step),
+          1e-7);
     }
   }
   std::vector<Vec3> u(x.size());
@@ -83,9 +87,9 @@ TEST(Ties, ForceAndProductAreTheDerivativesOfTheEnergy) {
   std::vector<Vec3> moved = x;
   for (std::size_t i = 0; i < u.size(); ++i) moved[i] += u[i];
   std::vector<Vec3> change(x.size(), Vec3::Zero());
-  add_tie_forces(m, moved, change);
+  TieTerm::add_forces(test::at(m, moved), change);
   std::vector<Vec3> product(x.size(), Vec3::Zero());
-  add_tie_stiffness_times(m, 2.0, u, product);
+  add_stiffness_times(TieTerm{}, test::at(m, x), Tangent::full, 2.0, u, product);
   for (std::size_t i = 0; i < u.size(); ++i) {
     EXPECT_LT((product[i] + 2.0 * (change[i] - f[i])).norm(), 1e-12);
   }
@@ -95,10 +99,12 @@ TEST(Ties, AreTheSpringsOfTheirPairs) {
   const Model m = tied();
   const std::vector<Vec3> x = displaced(m, 0.3);
   double energy = 0.0;
-  for_each_tie_pair(m, [&](Index i, Index j, double k) {
-    energy += 0.5 * k * (x[uz(i)] - x[uz(j)]).squaredNorm();
+  TieTerm::for_each_element(test::at(m, x), Tangent::full, [&](const Element& e) {
+    for_each_pair(e, [&](Index i, Index j, double w_i, double w_j) {
+      energy += 0.5 * -e.norm * w_i * w_j * (x[uz(i)] - x[uz(j)]).squaredNorm();
+    });
   });
-  EXPECT_NEAR(energy, tie_energy(m, x), 1e-12 * energy);
+  EXPECT_NEAR(energy, TieTerm::energy(test::at(m, x)), 1e-12 * energy);
 }
 
 TEST(Ties, TheModelsForcesHaveThemInBothPrecisions) {
@@ -106,11 +112,11 @@ TEST(Ties, TheModelsForcesHaveThemInBothPrecisions) {
   State s = initial_state(m);
   s.position = displaced(m, 0.3);
   std::vector<Vec3> f(s.position.size(), Vec3::Zero());
-  add_tie_forces(m, s.position, f);
+  TieTerm::add_forces(test::at(m, s.position), f);
   Workspace w(m);
-  compute_forces(m, s, w);
+  compute_forces(m, initial_controls(m), s, w);
   for (std::size_t i = 0; i < f.size(); ++i) EXPECT_LT((w.force[i] - f[i]).norm(), 1e-13);
-  EXPECT_EQ(elastic_energy(m, s.position, w), tie_energy(m, s.position));
+  EXPECT_EQ(elastic_energy(test::at(m, s.position), w), TieTerm::energy(test::at(m, s.position)));
 }
 
 }  // namespace

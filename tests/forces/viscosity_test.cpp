@@ -34,7 +34,7 @@ Model viscous_box(Law law = Law::neo_hookean, double beta = -1.0) {
   spec.materials = {material};
   spec.regions = {"all"};
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, spec);
   finish(m);
   return m;
@@ -50,7 +50,7 @@ Mat3 edges_of(const Field& x, const Tet& t) {
 Field pulls(const Model& m, const Field& x, const Field& v) {
   Workspace workspace(m);
   Field out(x.size());
-  stiffness_damping_times(m, x, 0.0, 1.0, v, Tangent::full, workspace, out);
+  stiffness_damping_times({m, initial_controls(m), x}, 0.0, 1.0, v, Tangent::full, workspace, out);
   for (Vec3& f : out) f = -f;
   return out;
 }
@@ -98,11 +98,11 @@ TEST(Viscosity, IsPartOfAllForcesAndItsHeatOfTheAccount) {
     Workspace workspace(m);
     State s = initial_state(m);
     s.position = shaken(m.rest_position, 0.01);
-    double power = compute_forces(m, s, workspace);
+    double power = compute_forces(m, initial_controls(m), s, workspace);
     const Field still = workspace.force;
     EXPECT_EQ(power, 0.0);
     s.half_velocity = scattered(s.position.size(), 1.0, 50);
-    power = compute_forces(m, s, workspace);
+    power = compute_forces(m, initial_controls(m), s, workspace);
     const Field damping = pulls(m, s.position, s.half_velocity);
     double loss = 0.0;
     for (std::size_t i = 0; i < damping.size(); ++i) {

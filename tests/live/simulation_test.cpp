@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "sinew/base/error.h"
-#include "sinew/live/carry_over.h"
+#include "sinew/sim/carry_over.h"
 #include "tests/live/support.h"
 
 namespace sinew::live {
@@ -201,11 +201,11 @@ TEST(Live, AGivenStepThatBecomesTooLongBecomesAutomatic) {
 TEST(Live, StepperLawAndGravityChange) {
   Simulation s(test::hanging_box());
   s.apply(SetStepping{"stepper", "implicit"});
-  EXPECT_EQ(s.status().stepper, "implicit");
+  EXPECT_EQ(s.status().stepper, StepperKind::implicit);
   s.apply(SetMaterial{"", "", "law", "lloyd"});
   s.apply(SetStepping{"stepper", "verlet"});
   frames(s, 2);
-  EXPECT_EQ(s.status().stepper, "verlet");
+  EXPECT_EQ(s.status().stepper, StepperKind::verlet);
   s.apply(SetGravity{Vec3(0, 9.81, 0)});
   frames(s, 60);
   EXPECT_GT(at(s, lowest(*s.topology())).y(), -0.05);
@@ -214,7 +214,7 @@ TEST(Live, StepperLawAndGravityChange) {
 
 TEST(Live, ARestStateSceneTakesImplicitSteps) {
   Simulation s(test::hanging_box({"stepper=static"}));
-  EXPECT_EQ(s.status().stepper, "implicit");
+  EXPECT_EQ(s.status().stepper, StepperKind::implicit);
   EXPECT_EQ(s.parameters()->stepper, "static");
   frames(s, 1);
 }

@@ -214,17 +214,17 @@ TEST(LiveSteps, AreImplicitWhereExplicitOnesCannotKeepPace) {
   Simulation s(test::hanging_box({"box.cells=[8,8,8]", "box.young=1e3"}));
   EXPECT_EQ(s.parameters()->stepper, "live");
   s.apply(SetMaterial{"", "", "young", "1e9"});
-  EXPECT_EQ(s.status().stepper, "implicit");
+  EXPECT_EQ(s.status().stepper, StepperKind::implicit);
   EXPECT_FALSE(s.status().reason.empty());
   s.apply(SetCompare{"fem"});
   frames(s, 3);
   EXPECT_EQ(s.frame().compared.empty(), false);
   s.apply(SetStepping{"stepper", "verlet"});
   EXPECT_EQ(s.parameters()->stepper, "verlet");
-  EXPECT_EQ(s.status().stepper, "verlet");
+  EXPECT_EQ(s.status().stepper, StepperKind::verlet);
   s.apply(SetStepping{"stepper", "live"});
   EXPECT_EQ(s.parameters()->stepper, "live");
-  EXPECT_EQ(s.status().stepper, "implicit");
+  EXPECT_EQ(s.status().stepper, StepperKind::implicit);
   s.apply(SetMaterial{"", "", "young", "1e3"});
   EXPECT_EQ(s.parameters()->document.find("stepper"), std::string::npos);
 }
@@ -249,7 +249,7 @@ TEST(Contacts, OfBodiesWithEachOtherAndWithHardObstacles) {
   Simulation alone(cubes(""));
   frames(alone, 12);
   EXPECT_TRUE(alone.frame().contact.empty());
-  EXPECT_EQ(alone.status().deepest, 0.0);
+  EXPECT_EQ(alone.status().counters.deepest, 0.0);
 
   Simulation s(cubes("[contact]\n"));
   EXPECT_TRUE(s.frame().contact.empty());
@@ -266,8 +266,8 @@ TEST(Contacts, OfBodiesWithEachOtherAndWithHardObstacles) {
   }
   EXPECT_GT(low, 0);
   EXPECT_GE(high, 4);
-  EXPECT_GT(s.status().contacts, 0);
-  EXPECT_LT(s.status().deepest, 1e-3);
+  EXPECT_GT(s.status().counters.contacts, 0);
+  EXPECT_LT(s.status().counters.deepest, 1e-3);
 
   Simulation table(parse_scene(
       "[obstacle.table]\nshape = \"box\"\ncenter = [0, -0.02, 0]\nsize = [0.4, 0.04, 0.4]\n"

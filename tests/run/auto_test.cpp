@@ -76,18 +76,19 @@ class Auto : public testing::Test {
 
 TEST_F(Auto, TakesVerletForSoftTissueAndImplicitStepsForStiffOnes) {
   const Summary soft = run_of(cantilever, {"beam.young=3e3"});
-  EXPECT_EQ(soft.stepper, "verlet");
-  EXPECT_EQ(soft.stepper_asked, "auto");
+  EXPECT_EQ(soft.stepper, StepperKind::verlet);
+  EXPECT_EQ(soft.stepper_asked, StepperKind::automatic);
   EXPECT_TRUE(soft.stepper_reason.starts_with("verlet: stable step ")) << soft.stepper_reason;
   const Summary stiff = run_of(cantilever, {"beam.young=1e9"});
-  EXPECT_EQ(stiff.stepper, "implicit");
+  EXPECT_EQ(stiff.stepper, StepperKind::implicit);
   EXPECT_NE(stiff.stepper_reason.find("; implicit: "), std::string::npos) << stiff.stepper_reason;
 }
 
 TEST_F(Auto, TheChoiceRunsAsIfItHadBeenAskedFor) {
   for (const char* young : {"beam.young=3e3", "beam.young=1e9"}) {
     const Summary chosen = run_of(cantilever, {young});
-    const Summary asked = run_of(cantilever, {young, "stepper=" + chosen.stepper});
+    const Summary asked =
+        run_of(cantilever, {young, "stepper=" + std::string(word_of(chosen.stepper))});
     EXPECT_EQ(chosen.state_hash, asked.state_hash);
     EXPECT_EQ(asked.stepper_reason, "");
   }
@@ -104,18 +105,18 @@ TEST_F(Auto, TheReasonIsTheSameForAnyNumberOfThreads) {
 TEST_F(Auto, WhatOnlyOneStepperKnowsDecides) {
   const Summary s =
       run_of(cantilever, {"beam.young=1e9", "duration=0.01", "ground.restitution=0.5"});
-  EXPECT_EQ(s.stepper, "verlet");
+  EXPECT_EQ(s.stepper, StepperKind::verlet);
   EXPECT_NE(s.stepper_reason.find("implicit steps do not know"), std::string::npos)
       << s.stepper_reason;
   // What both know leaves it to the work.
   for (const char* feature : {"ground.friction=0.5", "beam.stretch_limit=0.5",
                               "beam.volume_limit=0.01", "beam.start=inverted"}) {
     const Summary known = run_of(cantilever, {"beam.young=1e9", "duration=0.01", feature});
-    EXPECT_EQ(known.stepper, "implicit") << feature;
+    EXPECT_EQ(known.stepper, StepperKind::implicit) << feature;
     EXPECT_TRUE(known.stepper_reason.starts_with("verlet: stable step ")) << known.stepper_reason;
   }
-  EXPECT_EQ(run_of(cantilever, {"dt=0.02"}).stepper, "implicit");
-  EXPECT_EQ(run_of(cantilever, {"beam.young=3e3", "budget_ms=50"}).stepper, "implicit");
+  EXPECT_EQ(run_of(cantilever, {"dt=0.02"}).stepper, StepperKind::implicit);
+  EXPECT_EQ(run_of(cantilever, {"beam.young=3e3", "budget_ms=50"}).stepper, StepperKind::implicit);
 }
 
 TEST_F(Auto, ResumeGoesOnWithTheSameStepper) {
@@ -130,7 +131,7 @@ TEST_F(Auto, ResumeGoesOnWithTheSameStepper) {
     ASSERT_EQ(run_scene(scene_of(cantilever, {young}), options).status, RunStatus::interrupted);
     std::string said;
     RunOptions listen;
-    listen.on_stepper = [&](const std::string&, const std::string& reason) { said = reason; };
+    listen.on_stepper = [&](StepperKind, const std::string& reason) { said = reason; };
     const RunResult rest = resume_run(folder_, listen);
     EXPECT_EQ(rest.summary.stepper, whole.stepper);
     EXPECT_EQ(rest.summary.stepper_reason, whole.stepper_reason);

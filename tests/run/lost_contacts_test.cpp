@@ -6,18 +6,20 @@
 
 #include "sinew/scene/build.h"
 #include "sinew/sim/stepping.h"
+#include "tests/support/source_dir.h"
 
 namespace sinew {
 namespace {
 
 RunState run_of(const std::string& name, double* rest_depth = nullptr) {
-  const Scene scene = load_scene(SINEW_SOURCE_DIR "/tests/data/contact/" + name + ".toml", {});
+  const Scene scene = load_scene(test::source_path("tests/data/contact/" + name + ".toml"), {});
   const Model model = build_model(scene);
   RunState run;
   run.state = initial_state(model);
-  Stepping stepping(scene, model, run);
+  const Controls controls = initial_controls(model);
+  Stepping stepping(scene, model, controls, run);
   while (run.frame < stepping.frame_count()) {
-    stepping.advance_frame(run, nullptr);
+    stepping.advance_frame(controls, run, nullptr);
     if (rest_depth != nullptr && run.state.time > 0.8 * scene.duration)
       *rest_depth = std::max(*rest_depth, run.depth);
   }

@@ -38,8 +38,8 @@ TEST(Precision, SingleFollowsDouble) {
   for (const char* law : {"block.law=neo-hookean", "block.law=lloyd"}) {
     const Summary one = run_block({law, "precision=single"});
     const Summary two = run_block({law, "precision=double"});
-    EXPECT_EQ(one.precision, "single");
-    EXPECT_EQ(two.precision, "double");
+    EXPECT_EQ(one.precision, Precision::single);
+    EXPECT_EQ(two.precision, Precision::double_);
     const Vec3 way = two.probes[0].displacement;
     EXPECT_LT((one.probes[0].displacement - way).norm(), 1e-3 * way.norm()) << law;
     EXPECT_NEAR(one.energy.total(), two.energy.total(), 1e-4 * two.energy.work_in) << law;
@@ -64,7 +64,7 @@ TEST(Precision, SingleRightsATangledBody) {
 
 TEST(Precision, ImplicitStepsStayInDouble) {
   EXPECT_EQ(run_block({"precision=single", "stepper=implicit", "duration=0.05"}).precision,
-            "double");
+            Precision::double_);
 }
 
 }  // namespace

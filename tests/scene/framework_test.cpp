@@ -49,7 +49,7 @@ TEST(Framework, AFileIsAsTheSceneThatItSays) {
   EXPECT_EQ(s.name, "three");
   EXPECT_EQ(s.duration, 10.0);
   EXPECT_EQ(s.output.fps, 50.0);
-  EXPECT_EQ(s.stepper, "verlet");
+  EXPECT_EQ(s.stepper, StepperKind::verlet);
   EXPECT_FALSE(s.dt.has_value());
   ASSERT_EQ(s.bodies.size(), 3u);
   EXPECT_EQ(s.bodies[0].name, "block-1");

@@ -45,7 +45,7 @@ within = 1e-4
 
 double tip_of_rest(const Model& m) {
   State s = initial_state(m);
-  StaticSolver(m).solve(0.0, {}, s);
+  StaticSolver(m).solve(initial_controls(m), 0.0, {}, s);
   double y = 0.0;
   for (const Index i : m.probes[0].nodes) y += s.position[uz(i)].y() - m.rest_position[uz(i)].y();
   return y / static_cast<double>(m.probes[0].nodes.size());
@@ -102,7 +102,7 @@ TEST(Glue, TwoBodiesFlyOffTogetherWithTheirMomentum) {
     return p;
   };
   const Vec3 before = momentum();
-  for (int i = 0; i < 500; ++i) verlet_step(m, 2e-4, s, w);
+  for (int i = 0; i < 500; ++i) verlet_step(m, initial_controls(m), 2e-4, s, w);
   EXPECT_LT((momentum() - before).norm(), 1e-6 * before.norm());
   for (const Tie& tie : m.ties) EXPECT_LT(tie_offset(tie, s.position).norm(), 0.005);
 }

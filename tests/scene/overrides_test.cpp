@@ -45,7 +45,7 @@ TEST(Overrides, ReachValuesByPathAndByName) {
 TEST(Overrides, TakeWhatIsNotTomlAsText) {
   EXPECT_EQ(parse(kScene, {"beam.law=uniform"}).bodies[0].material.law, Law::uniform);
   EXPECT_EQ(parse(kScene, {"beam.law=\"uniform\""}).bodies[0].material.law, Law::uniform);
-  EXPECT_EQ(parse(kScene, {"stepper=verlet"}).stepper, "verlet");
+  EXPECT_EQ(parse(kScene, {"stepper=verlet"}).stepper, StepperKind::verlet);
   EXPECT_EQ(parse(kScene, {"title=2020-01-01 was a Wednesday"}).title,
             "2020-01-01 was a Wednesday");
   EXPECT_EQ(parse(kScene, {"title=x\nduration = 7"}).duration, 2.0);

@@ -133,7 +133,7 @@ checkpoint = 0
   EXPECT_EQ(s.forces[0].end, 2.0);
   EXPECT_EQ(s.probes[0].select.node_label, 4);
   EXPECT_EQ(s.ground->normal, Vec3(0, 1, 0));
-  EXPECT_EQ(s.output.encoding, "ascii");
+  EXPECT_EQ(s.output.encoding, io::VtuEncoding::ascii);
   EXPECT_EQ(parse(s.document).document, s.document);
 }
 

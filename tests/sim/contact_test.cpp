@@ -23,14 +23,18 @@ constexpr double g = 9.81;
 // A run that is looked at frame by frame.
 struct Trial {
   explicit Trial(const Scene& s)
-      : scene(s), model(build_model(scene)), run(start(model)), stepping(scene, model, run) {}
+      : scene(s),
+        model(build_model(scene)),
+        controls(initial_controls(model)),
+        run(start(model)),
+        stepping(scene, model, controls, run) {}
   static RunState start(const Model& model) {
     RunState run;
     run.state = initial_state(model);
     return run;
   }
   void to_the_end() {
-    while (run.frame < stepping.frame_count()) stepping.advance_frame(run, nullptr);
+    while (run.frame < stepping.frame_count()) stepping.advance_frame(controls, run, nullptr);
   }
   Vec3 center(std::size_t body) const { return mean(body, run.state.position); }
   Vec3 velocity(std::size_t body) const { return mean(body, run.state.half_velocity); }
@@ -50,10 +54,13 @@ struct Trial {
     }
     return sum;
   }
-  double energy() { return measure_energies(model, run.state, stepping.workspace()).total(); }
+  double energy() {
+    return measure_energies(model, controls, run.state, stepping.workspace()).total();
+  }
 
   Scene scene;
   Model model;
+  Controls controls;
   RunState run;
   Stepping stepping;
 };
@@ -103,7 +110,8 @@ TEST(Contact, BodiesThatCollideKeepTheirMomentum) {
     EXPECT_LT((r.momentum() - before).norm(), 1e-6 * before.norm()) << stepper;
     EXPECT_GT(r.velocity(1).x(), -1.9) << stepper;  // they did meet
     EXPECT_GT(r.run.friction_work, 0.0) << stepper;
-    const Energies e = measure_energies(r.model, r.run.state, r.stepping.workspace());
+    const Energies e =
+        measure_energies(r.model, initial_controls(r.model), r.run.state, r.stepping.workspace());
     EXPECT_LT(e.kinetic + e.elastic, energy) << stepper;
     // The account of impacts is of first order in the step.
     EXPECT_NEAR(e.total(), energy, (stepper == "verlet" ? 0.1 : 0.2) * energy) << stepper;
@@ -197,7 +205,7 @@ TEST(Contact, ARunThatIsCutGoesOnToTheSameBits) {
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
     Trial cut(scene);
-    while (cut.run.frame < 2) cut.stepping.advance_frame(cut.run, nullptr);
+    while (cut.run.frame < 2) cut.stepping.advance_frame(cut.controls, cut.run, nullptr);
     EXPECT_GT(cut.run.state.reactions.contacts.size(), 10U);
     const auto file = std::filesystem::temp_directory_path() /
                       ("sinew-contact-" + std::to_string(::getpid()) + ".bin");
@@ -219,7 +227,8 @@ TEST(Contact, WhatLiesStillHasNoKineticEnergy) {
                         cube("a", "position = [0, 0.01, 0]\ndamping_ratio = 0.5") +
                         cube("b", "position = [0, 0.03, 0]\ndamping_ratio = 0.5")));
   r.to_the_end();
-  const Energies e = measure_energies(r.model, r.run.state, r.stepping.workspace());
+  const Energies e =
+      measure_energies(r.model, initial_controls(r.model), r.run.state, r.stepping.workspace());
   EXPECT_LT(e.kinetic, 1e-3 * e.elastic);
   EXPECT_NEAR(e.total(), 0.0, 0.02 * std::abs(e.gravity));
 }

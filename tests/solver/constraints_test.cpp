@@ -54,7 +54,7 @@ double lowest(const Model& m, const State& s) {
 double weight(const Model& m) {
   double mass = 0.0;
   for (const double x : m.mass) mass += x;
-  return mass * m.gravity.norm();
+  return mass * m.start_gravity.norm();
 }
 
 // --- the formulas ---
@@ -154,9 +154,11 @@ TEST(Constraints, ForceAndTangentAreTheDerivativesOfTheEnergy) {
   // The product takes the curvature of the volumes from the material's own: with and without.
   std::vector<Vec3> with(u.size()), without(u.size());
   const std::vector<Vec3> x = at(0.0);
-  stiffness_damping_times(c.model, x, 1.0, 0.0, u, Tangent::full, workspace, without);
+  stiffness_damping_times({c.model, initial_controls(c.model), x}, 1.0, 0.0, u, Tangent::full,
+                          workspace, without);
   constraints.linearise(x, workspace);
-  stiffness_damping_times(c.model, x, 1.0, 0.0, u, Tangent::full, workspace, with);
+  stiffness_damping_times({c.model, initial_controls(c.model), x}, 1.0, 0.0, u, Tangent::full,
+                          workspace, with);
   constraints.add_stiffness_times(u, workspace, with);
   const std::vector<Vec3> plus = force(e), minus = force(-e);
   double error = 0.0, size = 0.0;
@@ -180,12 +182,12 @@ TEST(Constraints, ADroppedBoxComesToRestOnTheGround) {
     State s = initial_state(m);
     Workspace workspace(m);
     ImplicitStepper stepper(m);
-    double before = measure_energies(m, s, workspace).gravity;
+    double before = measure_energies(m, initial_controls(m), s, workspace).gravity;
     for (int i = 0; i < 150; ++i) {
-      const ImplicitReport report = stepper.step(frame, {}, s);
+      const ImplicitReport report = stepper.step(frame, initial_controls(m), {}, s);
       EXPECT_TRUE(report.within);
       EXPECT_GE(lowest(m, s), -1e-3 * 0.05);
-      const Energies e = measure_energies(m, s, workspace);
+      const Energies e = measure_energies(m, initial_controls(m), s, workspace);
       const double mechanical = e.kinetic + e.elastic + e.gravity;
       EXPECT_LE(mechanical, before + 1e-6 * weight(m)) << young << " step " << i;
       before = mechanical;
@@ -208,11 +210,11 @@ Vec3 acceleration_on_slope(double tangent) {
   material.damping_ratio = 1.0;
   Model m = box_above_ground(material, 0.0, 0.5);
   const double angle = std::atan(tangent);
-  m.gravity = 9.81 * Vec3(std::sin(angle), -std::cos(angle), 0.0);
+  m.start_gravity = 9.81 * Vec3(std::sin(angle), -std::cos(angle), 0.0);
   State s = initial_state(m);
   ImplicitStepper stepper(m);
   const auto mean_velocity = [&] {
-    for (int i = 0; i < 30; ++i) stepper.step(frame, {}, s);
+    for (int i = 0; i < 30; ++i) stepper.step(frame, initial_controls(m), {}, s);
     Vec3 momentum = Vec3::Zero();
     for (std::size_t i = 0; i < m.mass.size(); ++i) momentum += m.mass[i] * s.half_velocity[i];
     return Vec3(momentum / (weight(m) / 9.81));
@@ -239,7 +241,7 @@ TEST(Constraints, ASlidingBoxStopsWhereFrictionHasTakenItsEnergy) {
   for (Vec3& v : s.half_velocity) v = Vec3(speed, 0, 0);
   const double kinetic = 0.5 * weight(m) / 9.81 * speed * speed;
   ImplicitStepper stepper(m);
-  for (int i = 0; i < 60; ++i) stepper.step(frame, {}, s);
+  for (int i = 0; i < 60; ++i) stepper.step(frame, initial_controls(m), {}, s);
   // v^2 / (2 mu g), less what a step of backward Euler is ahead of it: mu g h t / 2.
   const double stop = speed / (0.5 * 9.81);
   const double way = 0.5 * speed * stop - 0.5 * speed * frame;
@@ -251,12 +253,12 @@ TEST(Constraints, ASlidingBoxStopsWhereFrictionHasTakenItsEnergy) {
 TEST(Constraints, ThePlasticImpactOfAMassIsAllDissipated) {
   Model m =
       point_masses({{Vec3(0, 0, 0), 1.0, Vec3(0, -3, 0)}, {Vec3(1, 0, 0), 1.0, Vec3(0, -3, 0)}});
-  m.gravity = Vec3(0, -10, 0);
+  m.start_gravity = Vec3(0, -10, 0);
   m.ground = Ground{Vec3(0, -0.5, 0), Vec3::UnitY(), 0.0, 0.5};
   finish(m);
   State s = initial_state(m);
   ImplicitStepper stepper(m);
-  for (int i = 0; i < 60; ++i) stepper.step(0.005, {}, s);
+  for (int i = 0; i < 60; ++i) stepper.step(0.005, initial_controls(m), {}, s);
   EXPECT_NEAR(s.position[0].y(), -0.5, 1e-6);
   EXPECT_LT(s.half_velocity[0].norm(), 1e-4 * 10.0 * 0.005);  // ground_tolerance / h
   // 9 J of motion and 10 J of height; backward Euler keeps part of the impact to itself.
@@ -274,11 +276,11 @@ TEST(Constraints, StretchLimitsHoldUnderAHeavyLoadAtAnyStiffness) {
     State s = initial_state(m);
     ImplicitStepper stepper(m);
     for (int i = 0; i < 30; ++i) {
-      EXPECT_TRUE(stepper.step(frame, {}, s).within) << young << " step " << i;
+      EXPECT_TRUE(stepper.step(frame, initial_controls(m), {}, s).within) << young << " step " << i;
       EXPECT_LE(measure_limit_violation(m, s.position), m.limit_tolerance);
     }
     State rest = initial_state(m);
-    EXPECT_TRUE(StaticSolver(m).solve(1.0, {}, rest).within) << young;
+    EXPECT_TRUE(StaticSolver(m).solve(initial_controls(m), 1.0, {}, rest).within) << young;
     EXPECT_LE(measure_limit_violation(m, rest.position), m.limit_tolerance);
     // Stiff bodies never come to their limits.
     EXPECT_EQ(act(rest.reactions), young < 1e9);
@@ -296,11 +298,11 @@ TEST(Constraints, VolumeLimitsHold) {
     State s = initial_state(m);
     ImplicitStepper stepper(m);
     for (int i = 0; i < (test::sanitized ? 2 : 30); ++i) {
-      EXPECT_TRUE(stepper.step(frame, {}, s).within);
+      EXPECT_TRUE(stepper.step(frame, initial_controls(m), {}, s).within);
       EXPECT_LE(largest_cell_change(m, s.position), 1e-3 + 1e-4);
     }
     State rest = initial_state(m);
-    EXPECT_TRUE(StaticSolver(m).solve(1.0, {}, rest).within);
+    EXPECT_TRUE(StaticSolver(m).solve(initial_controls(m), 1.0, {}, rest).within);
     EXPECT_LE(largest_cell_change(m, rest.position), 1e-3 + 1e-4);
     EXPECT_TRUE(act(rest.reactions));
   }
@@ -309,7 +311,7 @@ TEST(Constraints, VolumeLimitsHold) {
 TEST(Constraints, ABoxRestsOnTheGroundWhereItIsPutDown) {
   const Model m = box_above_ground(soft(1e4), 0.03, 0.5);
   State s = initial_state(m);
-  const StaticReport report = StaticSolver(m).solve(1.0, {}, s);
+  const StaticReport report = StaticSolver(m).solve(initial_controls(m), 1.0, {}, s);
   EXPECT_TRUE(report.within);
   EXPECT_EQ(report.contacts, 9);
   EXPECT_NEAR(lowest(m, s), 0.0, 1e-4 * 0.05);
@@ -325,9 +327,9 @@ TEST(Constraints, ABoxRestsOnTheGroundWhereItIsPutDown) {
 
 TEST(Constraints, ARestStateOnASlopeIsRefused) {
   Model m = box_above_ground(soft(), 0.0, 0.5);
-  m.gravity = Vec3(1, -9, 0);
+  m.start_gravity = Vec3(1, -9, 0);
   State s = initial_state(m);
-  EXPECT_THROW(StaticSolver(m).solve(1.0, {}, s), Error);
+  EXPECT_THROW(StaticSolver(m).solve(initial_controls(m), 1.0, {}, s), Error);
 }
 
 TEST(Constraints, TangledBodiesAreLedBack) {
@@ -338,14 +340,15 @@ TEST(Constraints, TangledBodiesAreLedBack) {
       material.damping_ratio = 0.5;
       material.drag = 10.0;
       Model m = tissue_box(material, {3, 3, 3});
-      m.gravity.setZero();
+      m.start_gravity.setZero();
       if (held) m.pins.push_back({"wall", test::nodes_at(m, 0, -0.05), {}});
       finish(m);
       State s = initial_state(m);
       test::tangle_nodes(m, tangle, s.position);
       ImplicitStepper stepper(m);
       int righted = 0;
-      for (int i = 0; i < 90; ++i) righted += stepper.step(frame, {}, s).righted;
+      for (int i = 0; i < 90; ++i)
+        righted += stepper.step(frame, initial_controls(m), {}, s).righted;
       EXPECT_GT(righted, 0);
       EXPECT_LT(righted, 20);
       const std::vector<Vec3> shape = rest_shape_at(m, m.bodies[0], s.position);
@@ -376,7 +379,7 @@ TEST(Constraints, SameBitsAtAnyThreadCount) {
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
     State s = initial_state(m);
-    ImplicitStepper(m).step(0.25 * frame, options, s);
+    ImplicitStepper(m).step(0.25 * frame, initial_controls(m), options, s);
     EXPECT_TRUE(act(s.reactions));
     hashes.push_back(s.hash());
   }
@@ -389,8 +392,8 @@ TEST(Constraints, TheStateIsAllThatAStepGoesOnFrom) {
   State anew = through;
   ImplicitStepper stepper(m);
   for (int i = 0; i < 5; ++i) {
-    stepper.step(frame, {}, through);
-    ImplicitStepper(m).step(frame, {}, anew);
+    stepper.step(frame, initial_controls(m), {}, through);
+    ImplicitStepper(m).step(frame, initial_controls(m), {}, anew);
   }
   EXPECT_TRUE(act(through.reactions));
   EXPECT_EQ(through.hash(), anew.hash());

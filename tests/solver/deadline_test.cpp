@@ -18,7 +18,7 @@ double kinetic(const Model& m, const Field& v) {
 
 double potential(const Model& m, State s, Workspace& workspace) {
   s.half_velocity.assign(s.half_velocity.size(), Vec3::Zero());
-  return potential_energy(m, s, workspace);
+  return potential_energy(m, initial_controls(m), s, workspace);
 }
 
 // What stability rests on: with one product a step, |v - v_n|^2 m/2 + E(x) still ends at or below
@@ -40,7 +40,7 @@ TEST(Deadline, AStepCutShortLowersThePotential) {
   options.deadline = Clock::now();
   for (int step = 0; step < 100; ++step) {
     const State before = s;
-    const ImplicitReport report = stepper.step(1.0 / 60.0, options, s);
+    const ImplicitReport report = stepper.step(1.0 / 60.0, initial_controls(m), options, s);
     EXPECT_EQ(report.newton, 1);
     EXPECT_EQ(report.products, 1);
     EXPECT_EQ(report.cuts, 0);
@@ -61,9 +61,9 @@ TEST(Deadline, AFarOneChangesNothing) {
   finish(m);
   ImplicitOptions options;
   State a = initial_state(m), b = a;
-  ImplicitStepper(m).step(0.01, options, a);
+  ImplicitStepper(m).step(0.01, initial_controls(m), options, a);
   options.deadline = Clock::now() + std::chrono::hours(1);
-  const ImplicitReport report = ImplicitStepper(m).step(0.01, options, b);
+  const ImplicitReport report = ImplicitStepper(m).step(0.01, initial_controls(m), options, b);
   EXPECT_FALSE(report.ran_out);
   EXPECT_EQ(a.hash(), b.hash());
 }

@@ -21,7 +21,7 @@ constexpr double start_angle = 0.3;  // [rad]
 Model pendulum() {
   Model m = point_masses(
       {{Vec3::Zero(), 0.0}, {2.0 * Vec3(std::sin(start_angle), -std::cos(start_angle), 0), 1.0}});
-  m.gravity = Vec3(0, -9.81, 0);
+  m.start_gravity = Vec3(0, -9.81, 0);
   add_distance(m, 0, 1, 2.0, false);
   m.limit_sweeps = 20;
   finish(m);
@@ -52,15 +52,15 @@ TEST(Distances, APendulumOfVerletHasItsPeriodAndKeepsItsEnergy) {
   const Model m = pendulum();
   State s = initial_state(m);
   Workspace w(m);
-  const double energy = measure_energies(m, s, w).total();
+  const double energy = measure_energies(m, initial_controls(m), s, w).total();
   const double h = 0.005;
   const double period = measured_period(h, m, s, [&](State& state) {
-    verlet_step(m, h, state, w);
+    verlet_step(m, initial_controls(m), h, state, w);
     ASSERT_NEAR(state.position[1].norm(), 2.0, 1e-14);
   });
   EXPECT_NEAR(period, exact_period(), 0.001 * period);
   const double swing = 9.81 * 2.0 * (1.0 - std::cos(start_angle));
-  EXPECT_NEAR(measure_energies(m, s, w).total(), energy, 0.01 * swing);
+  EXPECT_NEAR(measure_energies(m, initial_controls(m), s, w).total(), energy, 0.01 * swing);
   // Projecting after the move takes energy, first order in the step.
   EXPECT_NEAR(s.energy.dissipated, 0.0, 0.1 * swing);
 }
@@ -70,7 +70,8 @@ TEST(Distances, APendulumOfImplicitStepsHasItsPeriod) {
   State s = initial_state(m);
   ImplicitStepper stepper(m);
   const double h = 0.01;
-  const double period = measured_period(h, m, s, [&](State& state) { stepper.step(h, {}, state); });
+  const double period = measured_period(
+      h, m, s, [&](State& state) { stepper.step(h, initial_controls(m), {}, state); });
   EXPECT_NEAR(period, exact_period(), 0.01 * period);
 }
 
@@ -98,9 +99,10 @@ TEST(Distances, AChainKeepsItsMomentumAndAngularMomentum) {
     }
     return std::pair(linear, angular);
   };
-  verlet_step(m, 1e-3, s, w);
+  verlet_step(m, initial_controls(m), 1e-3, s, w);
   const auto before = momenta();
-  for (int i = 0; i < 2000; ++i) ASSERT_TRUE(verlet_step(m, 1e-3, s, w).limits_met);
+  for (int i = 0; i < 2000; ++i)
+    ASSERT_TRUE(verlet_step(m, initial_controls(m), 1e-3, s, w).limits_met);
   const auto after = momenta();
   EXPECT_LT((after.first - before.first).norm(), 1e-11 * before.first.norm());
   // The projection turns with the rods within a step: first order in the step.
@@ -110,14 +112,14 @@ TEST(Distances, AChainKeepsItsMomentumAndAngularMomentum) {
 // 1 kg and below it 3 kg, on ropes from two walls: rest and reactions by hand.
 TEST(Distances, ARestStateHangsOnItsRopes) {
   Model m = point_masses({{Vec3(-3, 0, 0), 0.0}, {Vec3(3, 0, 0), 0.0}, {Vec3(0, -1, 0), 1.0}});
-  m.gravity = Vec3(0, -9.81, 0);
+  m.start_gravity = Vec3(0, -9.81, 0);
   add_attachment(m, 0, 2, 1e-3, 0.0, 1.0);  // weak: holds the guess in place
   add_distance(m, 0, 2, 5.0, true);
   add_distance(m, 1, 2, 5.0, false);
   finish(m);
   State s = initial_state(m);
   StaticSolver solver(m);
-  const StaticReport report = solver.solve(0.0, {}, s);
+  const StaticReport report = solver.solve(initial_controls(m), 0.0, {}, s);
   EXPECT_TRUE(report.within);
   EXPECT_NEAR(s.position[2].x(), 0.0, 0.01);
   EXPECT_NEAR(s.position[2].y(), -4.0, 0.01);
@@ -146,12 +148,12 @@ TEST(Distances, BodiesOnADistanceSwingWithoutGainingEnergy) {
   finish(m);
   State s = initial_state(m);
   Workspace w(m);
-  const double start = measure_energies(m, s, w).total();
+  const double start = measure_energies(m, initial_controls(m), s, w).total();
   for (int i = 0; i < 4000; ++i) {
-    verlet_step(m, 2e-4, s, w);
+    verlet_step(m, initial_controls(m), 2e-4, s, w);
     ASSERT_NEAR((s.position[uz(from)] - s.position[uz(to)]).norm(), length, 1e-13);
   }
-  const Energies e = measure_energies(m, s, w);
+  const Energies e = measure_energies(m, initial_controls(m), s, w);
   EXPECT_NEAR(e.total(), start, 0.01 * std::abs(e.gravity));
 }
 

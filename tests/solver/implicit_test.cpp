@@ -24,7 +24,7 @@ using test::tissue_box;
 State run(const Model& m, double h, int steps, const ImplicitOptions& options) {
   State s = initial_state(m);
   ImplicitStepper stepper(m);
-  for (int i = 0; i < steps; ++i) stepper.step(h, options, s);
+  for (int i = 0; i < steps; ++i) stepper.step(h, initial_controls(m), options, s);
   return s;
 }
 State run(const Model& m, double h, int steps, Scheme scheme) {
@@ -81,7 +81,7 @@ TEST(Implicit, KeepsMomentumAndAngularMomentumOfAFreeBody) {
   Material material;
   material.young = 1e4;
   Model m = tissue_box(material, {2, 2, 2});
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   finish(m);
   State s = initial_state(m);
   for (std::size_t i = 0; i < s.position.size(); ++i) {
@@ -99,7 +99,8 @@ TEST(Implicit, KeepsMomentumAndAngularMomentumOfAFreeBody) {
   const auto [p, l] = momenta();
   ImplicitStepper stepper(m);
   for (int i = 0; i < 20; ++i) {
-    stepper.step(0.005, {.scheme = Scheme::backward_euler, .tolerance = 1e-10}, s);
+    stepper.step(0.005, initial_controls(m), {.scheme = Scheme::backward_euler, .tolerance = 1e-10},
+                 s);
   }
   const auto [p_end, l_end] = momenta();
   EXPECT_LE((p_end - p).norm(), 1e-8 * p.norm());
@@ -120,7 +121,7 @@ TEST(Implicit, ShortStepsAreVerlets) {
     State verlet = initial_state(m);
     Workspace workspace(m);
     const double t = 0.1;
-    for (int i = 0; i < 2000; ++i) verlet_step(m, t / 2000, verlet, workspace);
+    for (int i = 0; i < 2000; ++i) verlet_step(m, initial_controls(m), t / 2000, verlet, workspace);
     double error[2];
     for (int k = 0; k < 2; ++k) {
       const int steps = k == 0 ? 20 : 40;
@@ -148,7 +149,7 @@ TEST(Implicit, ComesToTheRestStateAtAnyStiffness) {
       m.pins.push_back({"wall", test::nodes_at(m, 2, -0.15), {}});
       finish(m);
       State rest = initial_state(m);
-      StaticSolver(m).solve(1.0, {}, rest);
+      StaticSolver(m).solve(initial_controls(m), 1.0, {}, rest);
       const State s = run(m, 1.0 / 60.0, 200, Scheme::backward_euler);
       double sag = 0.0, off = 0.0;
       for (std::size_t i = 0; i < s.position.size(); ++i) {
@@ -170,7 +171,7 @@ TEST(Implicit, EnergyAccountBalancesUpToTheScheme) {
   const auto drift = [&](int steps) {
     const State s = run(m, 0.2 / steps, steps, Scheme::sdirk2);
     Workspace workspace(m);
-    const Energies e = measure_energies(m, s, workspace);
+    const Energies e = measure_energies(m, initial_controls(m), s, workspace);
     EXPECT_GT(e.dissipated, 0.0);
     return std::abs(e.total()) / e.dissipated;
   };
@@ -187,14 +188,14 @@ TEST(Implicit, TheWorkOfAnObstacleIsInTheEnergyAccount) {
   material.damping_ratio = 0.2;
   Model m = tissue_box(material, {3, 3, 3});
   m.pins.push_back({"top", test::nodes_at(m, 1, 0.05), {}});
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   Path path;
   path.keys = {{0.0, Vec3::Zero()}, {0.2, Vec3(0, 0.012, 0)}};
   add_obstacle(m, {"ball", Vec3(0, -0.085, 0), 0.035, 1e7, path});
   finish(m);
   const State s = run(m, 0.001, 300, Scheme::sdirk2);  // backward Euler loses energy by itself
   Workspace workspace(m);
-  const Energies e = measure_energies(m, s, workspace);
+  const Energies e = measure_energies(m, initial_controls(m), s, workspace);
   EXPECT_GT(e.work_in, 1e-5);
   EXPECT_NEAR(e.total(), 0.0, 0.03 * e.work_in);
 }

@@ -49,15 +49,22 @@ double difference(const Model& m, double inertia, double rate) {
   const Field jitter = noise(m, 2e-3, 1);
   for (std::size_t i = 0; i < jitter.size(); ++i) s.position[i] += jitter[i];
   const Field lag = m.rest_position;
-  Objective objective{.model = m, .inertia = inertia, .rate = rate, .from = &lag, .lag = &lag};
-  compute_forces(m, s, workspace);
+  Objective objective{.model = m,
+                      .controls = initial_controls(m),
+                      .inertia = inertia,
+                      .rate = rate,
+                      .from = &lag,
+                      .lag = &lag};
+  compute_forces(m, initial_controls(m), s, workspace);
   TangentMatrix matrix(m);
-  matrix.assemble(objective, s.position, workspace);
+  matrix.assemble(objective, s.position, 0.0, workspace);
 
   const Field u = noise(m, 1.0, 2);
   Field plain(u.size()), damped(u.size());
-  stiffness_damping_times(m, s.position, 1.0, 0.0, u, Tangent::full, workspace, plain);
-  stiffness_damping_times(m, lag, 0.0, 1.0, u, Tangent::full, workspace, damped);
+  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, u, Tangent::full,
+                          workspace, plain);
+  stiffness_damping_times({m, initial_controls(m), lag}, 0.0, 1.0, u, Tangent::full, workspace,
+                          damped);
   Field4 u4(u.size()), fast(u.size());
   for (std::size_t i = 0; i < u.size(); ++i) {
     plain[i] += rate * damped[i];
@@ -101,12 +108,16 @@ int iterations(Index k, double young, double poisson, double inertia) {
   const Model m = clamped_bar(k, material);
   Workspace workspace(m);
   const State s = initial_state(m);
-  compute_forces(m, s, workspace);
+  compute_forces(m, initial_controls(m), s, workspace);
   LinearSolver linear(m);
-  Objective objective{.model = m, .inertia = inertia, .rate = 0.0, .lag = &m.rest_position};
-  linear.assemble(objective, s.position, workspace);
+  Objective objective{.model = m,
+                      .controls = initial_controls(m),
+                      .inertia = inertia,
+                      .rate = 0.0,
+                      .lag = &m.rest_position};
+  linear.assemble(objective, s.position, 0.0, workspace);
   Field p;
-  return linear.solve(outer_forces(m, s), 1e-3, 1000, {}, p);
+  return linear.solve(outer_forces(m, initial_controls(m), s), 1e-3, 1000, {}, p);
 }
 
 TEST(TwoLevel, IterationsHardlyDependOnTheMesh) {
@@ -129,15 +140,16 @@ TEST(LinearSolver, GivesTheSolutionToItsForcing) {
   const Model m = clamped_bar(2, material);
   Workspace workspace(m);
   const State s = initial_state(m);
-  compute_forces(m, s, workspace);
+  compute_forces(m, initial_controls(m), s, workspace);
   LinearSolver linear(m);
-  linear.assemble(Objective{m}, s.position, workspace);
-  const Field f = outer_forces(m, s);
+  linear.assemble(Objective{m, initial_controls(m)}, s.position, 0.0, workspace);
+  const Field f = outer_forces(m, initial_controls(m), s);
   Field p;
   for (const double forcing : {1e-1, 1e-2, 1e-3}) {  // single precision reaches 3e-4 here
     linear.solve(f, forcing, 1000, {}, p);
     Field back(p.size());
-    stiffness_damping_times(m, s.position, 1.0, 0.0, p, Tangent::full, workspace, back);
+    stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full,
+                            workspace, back);
     add(back, -1.0, f);
     EXPECT_LT(std::sqrt(dot(back, back)), 1.2 * forcing * std::sqrt(dot(f, f)));
   }
@@ -149,15 +161,17 @@ TEST(LinearSolver, ABodyThatNothingHoldsIsSolvedUpToItsMotion) {
   finish(m);
   Workspace workspace(m);
   const State s = initial_state(m);
-  compute_forces(m, s, workspace);
+  compute_forces(m, initial_controls(m), s, workspace);
   LinearSolver linear(m);
-  linear.assemble(Objective{m}, s.position, workspace);
+  linear.assemble(Objective{m, initial_controls(m)}, s.position, 0.0, workspace);
   // Forces that cancel: what the tangent makes of a displacement.
   Field f(m.rest_position.size());
-  stiffness_damping_times(m, s.position, 1.0, 0.0, noise(m, 1.0, 3), Tangent::full, workspace, f);
+  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, noise(m, 1.0, 3),
+                          Tangent::full, workspace, f);
   Field p, back(f.size());
   linear.solve(f, 1e-3, 1000, {}, p);
-  stiffness_damping_times(m, s.position, 1.0, 0.0, p, Tangent::full, workspace, back);
+  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full,
+                          workspace, back);
   add(back, -1.0, f);
   EXPECT_LT(std::sqrt(dot(back, back)), 2e-3 * std::sqrt(dot(f, f)));
 }

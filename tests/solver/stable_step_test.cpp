@@ -19,7 +19,7 @@ using test::tissue_box;
 TEST(StableStep, UndampedOscillatorByHand) {
   const Model m = oscillator(0.0, 1.0);
   Workspace w(m);
-  const StableStep s = find_stable_step(m, m.rest_position, w);
+  const StableStep s = find_stable_step(m, initial_controls(m), m.rest_position, w);
   EXPECT_NEAR(s.step, 2.0 / 5.0, 1e-10);
   EXPECT_NEAR(s.omega_max, 5.0, 1e-10);
   EXPECT_EQ(s.zeta, 0.0);
@@ -29,7 +29,7 @@ TEST(StableStep, DampedOscillatorFollowsTheFormula) {
   for (const double zeta : {0.1, 0.5, 1.0, 3.0}) {
     const Model m = oscillator(2 * zeta * std::sqrt(50.0 * 2.0), 1.0);
     Workspace w(m);
-    const StableStep s = find_stable_step(m, m.rest_position, w);
+    const StableStep s = find_stable_step(m, initial_controls(m), m.rest_position, w);
     EXPECT_NEAR(s.step, 2.0 / 5.0 * (std::sqrt(1 + zeta * zeta) - zeta), 1e-3 * s.step) << zeta;
     EXPECT_NEAR(s.zeta, zeta, 1e-9);
   }
@@ -39,7 +39,7 @@ TEST(StableStep, NothingThatMovesHasNoLimit) {
   Model m = point_masses({{Vec3(0, 0, 0), 1.0}});
   finish(m);
   Workspace w(m);
-  EXPECT_TRUE(std::isinf(find_stable_step(m, m.rest_position, w).step));
+  EXPECT_TRUE(std::isinf(find_stable_step(m, initial_controls(m), m.rest_position, w).step));
 }
 
 // Whether the linear motion about rest stays small for many steps of length h.
@@ -53,7 +53,7 @@ bool stays_bounded(const Model& m, double h) {
   Workspace w(m);
   for (int i = 0; i < 3000; ++i) {
     try {
-      verlet_step(m, h, s, w);
+      verlet_step(m, initial_controls(m), h, s, w);
     } catch (const Error&) {
       return false;
     }
@@ -69,11 +69,11 @@ TEST(StableStep, IsSharpOnTissueWithAndWithoutDamping) {
   for (const double zeta : {0.0, 0.1, 1.0}) {
     if (test::sanitized && zeta != 0.1) continue;
     Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = zeta}, {3, 3, 3});
-    m.gravity = Vec3::Zero();
+    m.start_gravity = Vec3::Zero();
     m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
     finish(m);
     Workspace w(m);
-    const double h = find_stable_step(m, m.rest_position, w).step;
+    const double h = find_stable_step(m, initial_controls(m), m.rest_position, w).step;
     EXPECT_TRUE(stays_bounded(m, 0.97 * h)) << zeta;
     EXPECT_FALSE(stays_bounded(m, 1.05 * h)) << zeta;
   }
@@ -83,11 +83,11 @@ TEST(StableStep, IsSharpOnViscousTissue) {
   if (test::sanitized) return;  // thousands of steps of what the test above runs, too
   for (const double zeta : {0.05, 0.2, 1.0}) {
     Model m = tissue_box({.damping = Damping::material, .damping_ratio = zeta}, {3, 3, 3});
-    m.gravity = Vec3::Zero();
+    m.start_gravity = Vec3::Zero();
     m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
     finish(m);
     Workspace w(m);
-    const double h = find_stable_step(m, m.rest_position, w).step;
+    const double h = find_stable_step(m, initial_controls(m), m.rest_position, w).step;
     EXPECT_TRUE(stays_bounded(m, 0.97 * h)) << zeta;
     EXPECT_FALSE(stays_bounded(m, 1.05 * h)) << zeta;
   }
@@ -98,8 +98,9 @@ TEST(StableStep, WatchingFromTheKnownModeFindsTheSameStep) {
     Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = zeta}, {4, 4, 4});
     finish(m);
     Workspace w(m);
-    StableStep found = find_stable_step(m, m.rest_position, w);
-    const double watched = watch_stable_step(m, m.rest_position, 0.9 * found.step, found.mode, w);
+    StableStep found = find_stable_step(m, initial_controls(m), m.rest_position, w);
+    const double watched =
+        watch_stable_step(m, initial_controls(m), m.rest_position, 0.9 * found.step, found.mode, w);
     EXPECT_LT(watched, 1.01 * found.step);
     EXPECT_GT(watched, 0.95 * found.step);
   }
@@ -109,13 +110,14 @@ TEST(StableStep, StretchStiffensAndIsSeenAfterAFewLooks) {
   Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.0}, {4, 4, 4});
   finish(m);
   Workspace w(m);
-  StableStep rest = find_stable_step(m, m.rest_position, w);
+  StableStep rest = find_stable_step(m, initial_controls(m), m.rest_position, w);
   std::vector<Vec3> stretched = m.rest_position;
   for (Vec3& p : stretched) p *= 3.0;
   double h = rest.step;
-  for (int look = 0; look < 5; ++look) h = watch_stable_step(m, stretched, h, rest.mode, w);
+  for (int look = 0; look < 5; ++look)
+    h = watch_stable_step(m, initial_controls(m), stretched, h, rest.mode, w);
   EXPECT_LT(h, 0.95 * rest.step);
-  EXPECT_NEAR(h, find_stable_step(m, stretched, w).step, 0.02 * h);
+  EXPECT_NEAR(h, find_stable_step(m, initial_controls(m), stretched, w).step, 0.02 * h);
 }
 
 TEST(StableStep, DescribesTheStiffestSpring) {

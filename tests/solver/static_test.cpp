@@ -35,7 +35,7 @@ double tip(const Model& m, const State& state) {
 
 double largest_free_force(const Model& m, const State& state) {
   Workspace workspace(m);
-  compute_forces(m, state, workspace);
+  compute_forces(m, initial_controls(m), state, workspace);
   double largest = 0.0;
   for (std::size_t i = 0; i < m.rest_position.size(); ++i) {
     if (m.inverse_mass[i] > 0.0) largest = std::max(largest, workspace.force[i].norm());
@@ -51,7 +51,7 @@ TEST(Static, TipOfTheBarIsThatOfTheMaterial) {
   const Model m = bar(material, 4);
   State state = initial_state(m);
   StaticSolver solver(m);
-  const StaticReport report = solver.solve(1.0, {}, state);
+  const StaticReport report = solver.solve(initial_controls(m), 1.0, {}, state);
   EXPECT_LE(report.residual, 1e-6);
   EXPECT_NEAR(tip(m, state), -0.0270, 0.015 * 0.0270);
   EXPECT_LE(largest_free_force(m, state), 1e-6 * 9.81 * 4.24);
@@ -66,7 +66,7 @@ TEST(Static, LinearTetsAreTheKnownReference) {
   material.volume = Volume::tet;
   const Model m = bar(material, 4);
   State state = initial_state(m);
-  StaticSolver(m).solve(1.0, {}, state);
+  StaticSolver(m).solve(initial_controls(m), 1.0, {}, state);
   EXPECT_NEAR(tip(m, state), -0.0226, 0.0001);
 }
 
@@ -81,7 +81,7 @@ TEST(Static, EveryLawAndVolumeComesToRest) {
       material.young = 300e3;
       const Model m = bar(material, 2);
       State state = initial_state(m);
-      const StaticReport report = StaticSolver(m).solve(1.0, {}, state);
+      const StaticReport report = StaticSolver(m).solve(initial_controls(m), 1.0, {}, state);
       EXPECT_LE(report.residual, 1e-6);
       EXPECT_LE(largest_free_force(m, state), 1e-6 * 9.81 * 4.24);
     }
@@ -91,14 +91,14 @@ TEST(Static, EveryLawAndVolumeComesToRest) {
 TEST(Static, FollowsAPinThatTurnsHalfARound) {
   Material material;
   Model m = bar(material, 3);
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   Pin turn{"turn", test::nodes_at(m, 2, 0.4), {}};
   turn.path.pivot = Vec3(0.0, 0.0, 0.4);
   turn.path.keys = {{1.0, Vec3::Zero(), Vec3(0.0, 0.0, 3.14159265358979)}};
   m.pins.push_back(turn);
   finish(m);
   State state = initial_state(m);
-  const StaticReport report = StaticSolver(m).solve(1.0, {}, state);
+  const StaticReport report = StaticSolver(m).solve(initial_controls(m), 1.0, {}, state);
   EXPECT_LE(report.residual, 1e-6);
   EXPECT_GE(report.load_steps, 9);
   // Half way along, the section has turned by a quarter round, by symmetry.
@@ -117,12 +117,12 @@ TEST(Static, FindsBackFromTangledStarts) {
       Material material;
       material.poisson = poisson;
       Model m = test::tissue_box(material, {3, 3, 3});
-      m.gravity = Vec3::Zero();
+      m.start_gravity = Vec3::Zero();
       m.pins.push_back({"floor", test::nodes_at(m, 1, -0.05), {}});
       finish(m);
       State state = initial_state(m);
       test::tangle_nodes(m, tangle, state.position);
-      StaticSolver(m).solve(1.0, {}, state);
+      StaticSolver(m).solve(initial_controls(m), 1.0, {}, state);
       for (Index i = 0; i < m.node_count(); ++i) {
         EXPECT_LE((state.position[uz(i)] - m.rest_position[uz(i)]).norm(), 1e-5) << "node " << i;
       }
@@ -136,10 +136,10 @@ TEST(Static, RefusesABodyThatNothingHolds) {
   finish(m);
   State state = initial_state(m);
   StaticSolver solver(m);
-  EXPECT_THROW(solver.solve(1.0, {}, state), Error);
-  m.gravity = Vec3::Zero();  // but without forces it rests where it is
+  EXPECT_THROW(solver.solve(initial_controls(m), 1.0, {}, state), Error);
+  m.start_gravity = Vec3::Zero();  // but without forces it rests where it is
   StaticSolver weightless(m);
-  EXPECT_EQ(weightless.solve(1.0, {}, state).newton, 0);
+  EXPECT_EQ(weightless.solve(initial_controls(m), 1.0, {}, state).newton, 0);
 }
 
 TEST(Static, TangentSolveReachesItsTolerance) {
@@ -149,10 +149,11 @@ TEST(Static, TangentSolveReachesItsTolerance) {
   StaticSolver solver(m);
   std::vector<Vec3> rhs(m.rest_position.size(), Vec3(0.0, -0.01, 0.0));
   std::vector<Vec3> u(rhs.size(), Vec3::Zero());
-  solver.solve_tangent(m.rest_position, rhs, 1e-8, u);
+  solver.solve_tangent({m, initial_controls(m), m.rest_position}, rhs, 1e-8, u);
   std::vector<Vec3> Ku(rhs.size());
   prepare_stiffness(m, m.rest_position, solver.workspace());
-  stiffness_damping_times(m, m.rest_position, 1.0, 0.0, u, Tangent::full, solver.workspace(), Ku);
+  stiffness_damping_times({m, initial_controls(m), m.rest_position}, 1.0, 0.0, u, Tangent::full,
+                          solver.workspace(), Ku);
   double error = 0.0, size = 0.0;
   for (std::size_t i = 0; i < u.size(); ++i) {
     if (m.inverse_mass[i] == 0.0) continue;

@@ -26,7 +26,7 @@ using test::tissue_box;
 State run(const Model& m, double h, int steps) {
   State s = initial_state(m);
   Workspace w(m);
-  for (int i = 0; i < steps; ++i) verlet_step(m, h, s, w);
+  for (int i = 0; i < steps; ++i) verlet_step(m, initial_controls(m), h, s, w);
   return s;
 }
 
@@ -49,7 +49,7 @@ TEST(Verlet, OneSpringOscillatesAtSqrtKOverMWithSecondOrderError) {
 TEST(Verlet, StartsAsPositionVerletDoes) {
   // x(-h) = x0 - h v0 + a0 h^2/2, x(h) = 2 x0 - x(-h) + a0 h^2 = x0 + h v0 + a0 h^2/2.
   Model m = point_masses({{Vec3(0, 0, 0), 1.0, Vec3(3, 0, 0)}});
-  m.gravity = Vec3(0, -10, 0);
+  m.start_gravity = Vec3(0, -10, 0);
   finish(m);
   const State s = run(m, 0.1, 1);
   EXPECT_NEAR(s.position[0].x(), 0.3, 1e-15);
@@ -66,7 +66,7 @@ TEST(Verlet, MatchesPositionVerletStepByStep) {
     const double next = 2 * now - before - 25.0 * now * h * h;
     before = now;
     now = next;
-    verlet_step(m, h, s, w);
+    verlet_step(m, initial_controls(m), h, s, w);
     ASSERT_NEAR(s.position[1].x() - 1.0, now, 1e-12);
   }
 }
@@ -79,25 +79,26 @@ TEST(Verlet, TalksVelocityIsTheCentralDifference) {
   Vec3 before, at;
   for (int i = 0; i < 50; ++i) {
     before = s.position[1];
-    verlet_step(m, h, s, w);
+    verlet_step(m, initial_controls(m), h, s, w);
   }
   at = s.position[1];
-  compute_forces(m, s, w);
+  compute_forces(m, initial_controls(m), s, w);
   const Vec3 v = synchronous_velocity(m, s, w)[1];
-  verlet_step(m, h, s, w);
+  verlet_step(m, initial_controls(m), h, s, w);
   EXPECT_NEAR(v.x(), (s.position[1].x() - before.x()) / (2 * h), 1e-13);
   EXPECT_NE(at.x(), before.x());
 }
 
 TEST(Verlet, ParabolaOfAThrowIsExactWithAnyStepLengths) {
   Model m = point_masses({{Vec3(0, 0, 0), 1.0, Vec3(1, 5, 0)}});
-  m.gravity = Vec3(0, -9.81, 0);
+  m.start_gravity = Vec3(0, -9.81, 0);
   finish(m);
   State s = initial_state(m);
   Workspace w(m);
-  for (const double h : {0.01, 0.01, 0.003, 0.02, 0.007, 0.01}) verlet_step(m, h, s, w);
+  for (const double h : {0.01, 0.01, 0.003, 0.02, 0.007, 0.01})
+    verlet_step(m, initial_controls(m), h, s, w);
   const double t = s.time;
-  compute_forces(m, s, w);
+  compute_forces(m, initial_controls(m), s, w);
   EXPECT_NEAR(synchronous_velocity(m, s, w)[0].y(), 5 - 9.81 * t, 1e-13);
   EXPECT_NEAR(s.position[0].y(), 5 * t - 9.81 / 2 * t * t, 1e-14);
 }
@@ -131,9 +132,9 @@ TEST(Verlet, DashpotHeatIsTheEnergyLost) {
   const Model m = oscillator(2.0);
   State s = initial_state(m);
   Workspace w(m);
-  const double start = measure_energies(m, s, w).total();
-  for (int i = 0; i < 20'000; ++i) verlet_step(m, 1e-3, s, w);
-  const Energies e = measure_energies(m, s, w);
+  const double start = measure_energies(m, initial_controls(m), s, w).total();
+  for (int i = 0; i < 20'000; ++i) verlet_step(m, initial_controls(m), 1e-3, s, w);
+  const Energies e = measure_energies(m, initial_controls(m), s, w);
   EXPECT_NEAR(e.dissipated, start, 2e-3 * start);
   EXPECT_LT(e.kinetic + e.elastic, 1e-3 * start);
 }
@@ -163,15 +164,15 @@ TEST(Verlet, FreeFlightKeepsMomentumAndAngularMomentumToRounding) {
   spec.velocity = Vec3(0.3, -0.2, 0.5);
   spec.spin = Vec3(3, 1, -2);
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, spec);
   finish(m);
   Workspace w(m);
   State s = initial_state(m);
-  const double h = 0.5 * find_stable_step(m, s.position, w).step;
-  verlet_step(m, h, s, w);
+  const double h = 0.5 * find_stable_step(m, initial_controls(m), s.position, w).step;
+  verlet_step(m, initial_controls(m), h, s, w);
   const Vec3 p = momentum(m, s), l = angular_momentum(m, s);
-  for (int i = 0; i < 2000; ++i) verlet_step(m, h, s, w);
+  for (int i = 0; i < 2000; ++i) verlet_step(m, initial_controls(m), h, s, w);
   EXPECT_LT((momentum(m, s) - p).norm(), 1e-13 * p.norm() * 10);
   EXPECT_LT((angular_momentum(m, s) - l).norm(), 1e-12 * l.norm());
   // It has really deformed and turned.
@@ -187,14 +188,15 @@ TEST(Verlet, EnergyStaysBoundedWithoutDampingOver100000Steps) {
   for (std::size_t i = 0; i < s.position.size(); ++i) {
     if (m.inverse_mass[i] > 0) s.position[i] *= 1.05;  // rings in many modes
   }
-  const double h = 0.5 * find_stable_step(m, s.position, w).step;
-  const double start = measure_energies(m, s, w).total();
+  const double h = 0.5 * find_stable_step(m, initial_controls(m), s.position, w).step;
+  const double start = measure_energies(m, initial_controls(m), s, w).total();
   double worst_early = 0.0, worst_late = 0.0;
   const int steps = test::effort(100'000);
   for (int i = 1; i <= steps; ++i) {
-    verlet_step(m, h, s, w);
+    verlet_step(m, initial_controls(m), h, s, w);
     if (i % 100 != 0) continue;
-    const double off = std::abs(measure_energies(m, s, w).total() - start) / start;
+    const double off =
+        std::abs(measure_energies(m, initial_controls(m), s, w).total() - start) / start;
     double& worst = i <= steps / 10 ? worst_early : worst_late;
     worst = std::max(worst, off);
   }
@@ -213,10 +215,10 @@ TEST(Verlet, LimitsHoldToTheirToleranceAtTheEndOfAStep) {
   finish(m);
   Workspace w(m);
   State s = initial_state(m);
-  const double h = 0.5 * find_stable_step(m, s.position, w).step;
+  const double h = 0.5 * find_stable_step(m, initial_controls(m), s.position, w).step;
   int sweeps = 0;
   for (int i = 0; i < 600; ++i) {
-    const VerletReport r = verlet_step(m, h, s, w);
+    const VerletReport r = verlet_step(m, initial_controls(m), h, s, w);
     ASSERT_TRUE(r.limits_met);
     ASSERT_LE(measure_limit_violation(m, s.position), 1e-3);
     sweeps += r.limit_sweeps;
@@ -232,7 +234,7 @@ TEST(Verlet, LimitsReportWhenTheSweepsDidNotDo) {
   finish(m);
   State s = initial_state(m);
   Workspace w(m);
-  const VerletReport r = verlet_step(m, 1e-3, s, w);
+  const VerletReport r = verlet_step(m, initial_controls(m), 1e-3, s, w);
   EXPECT_FALSE(r.limits_met);
   EXPECT_EQ(r.limit_sweeps, 5);
 }
@@ -252,7 +254,7 @@ TEST(Verlet, PinsFollowTheirPathsAndTheirWorkIsCounted) {
   EXPECT_NEAR(s.position[2].x(), 2.5, 1e-15);
   EXPECT_NEAR(s.position[1].x(), 1.25, 1e-6);
   Workspace w(m);
-  const Energies e = measure_energies(m, s, w);
+  const Energies e = measure_energies(m, initial_controls(m), s, w);
   EXPECT_NEAR(e.elastic, 2 * 0.5 * 100 * 0.25 * 0.25, 1e-4);
   EXPECT_NEAR(e.work_in, e.elastic + e.dissipated, 1e-3 * e.work_in);
 }
@@ -265,12 +267,12 @@ TEST(Verlet, LoadsActWhileTheyLastAndTheirWorkIsCounted) {
   // 4 N on 2 kg for 0.5 s: 1 m/s each, 2 J in all.
   EXPECT_NEAR(s.half_velocity[0].x(), 1.0, 2e-3);
   Workspace w(m);
-  EXPECT_NEAR(measure_energies(m, s, w).kinetic, s.energy.work_in, 1e-12);
+  EXPECT_NEAR(measure_energies(m, initial_controls(m), s, w).kinetic, s.energy.work_in, 1e-12);
 }
 
 TEST(Verlet, AMovingObstaclePressesAndItsWorkIsCounted) {
   Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.5}, {4, 4, 4});
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   m.pins = {{"floor", test::nodes_at(m, 1, -0.05), {}}};
   Path path;
   path.keys = {{0.2, Vec3(0, -0.02, 0), Vec3::Zero()}};
@@ -279,13 +281,13 @@ TEST(Verlet, AMovingObstaclePressesAndItsWorkIsCounted) {
   finish(m);
   Workspace w(m);
   State s = initial_state(m);
-  const double h = 0.5 * find_stable_step(m, s.position, w).step;
-  while (s.time < 0.6) verlet_step(m, h, s, w);
+  const double h = 0.5 * find_stable_step(m, initial_controls(m), s.position, w).step;
+  while (s.time < 0.6) verlet_step(m, initial_controls(m), h, s, w);
   const ObstacleReading ball = read_obstacles(m, s.position, s.time)[0];
   EXPECT_GT(ball.contacts, 3);
   EXPECT_GT(ball.force.y(), 1.0);
   EXPECT_LT(ball.depth, 2e-4);  // of 20 mm
-  const Energies e = measure_energies(m, s, w);
+  const Energies e = measure_energies(m, initial_controls(m), s, w);
   EXPECT_GT(e.work_in, 0.0);
   EXPECT_LT(e.kinetic, 1e-2 * e.work_in);
   EXPECT_LT(std::abs(e.total()), 0.01 * e.work_in);
@@ -293,23 +295,23 @@ TEST(Verlet, AMovingObstaclePressesAndItsWorkIsCounted) {
 
 TEST(Verlet, AnElasticImpactOnAnObstacleKeepsTheEnergy) {
   Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.0}, {3, 3, 3});
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   for (Vec3& v : m.start_velocity) v = Vec3(0, -0.5, 0);
   add_obstacle(m, {"ball", Vec3(0.01, -0.1, 0), 0.04, 2e8});
   finish(m);
   Workspace w(m);
   State s = initial_state(m);
-  const double start = measure_energies(m, s, w).total();
-  const double h = 0.3 * find_stable_step(m, s.position, w).step;
+  const double start = measure_energies(m, initial_controls(m), s, w).total();
+  const double h = 0.3 * find_stable_step(m, initial_controls(m), s.position, w).step;
   double deepest = 0.0;
   while (s.time < 0.3) {
-    verlet_step(m, h, s, w);
-    deepest = std::max(deepest, measure_energies(m, s, w).contact);
+    verlet_step(m, initial_controls(m), h, s, w);
+    deepest = std::max(deepest, measure_energies(m, initial_controls(m), s, w).contact);
   }
   EXPECT_GT(deepest, 1e-3 * start);
   EXPECT_EQ(read_obstacles(m, s.position, s.time)[0].contacts, 0);
   EXPECT_GT(momentum(m, s).y(), 0.0);  // it came back
-  EXPECT_NEAR(measure_energies(m, s, w).total(), start, 0.02 * start);
+  EXPECT_NEAR(measure_energies(m, initial_controls(m), s, w).total(), start, 0.02 * start);
 }
 
 TEST(Verlet, LoadsRampUp) {
@@ -344,14 +346,15 @@ TEST(Verlet, FindsBackFromTangledStarts) {
       material.young = 1e4;
       material.damping_ratio = 0.3;
       Model m = tissue_box(material, {3, 3, 3});
-      m.gravity = Vec3::Zero();
+      m.start_gravity = Vec3::Zero();
       if (held) m.pins.push_back({"floor", test::nodes_at(m, 1, -0.05), {}});
       finish(m);
       State state = initial_state(m);
       test::tangle_nodes(m, tangle, state.position);
       Workspace workspace(m);
       int righted = 0;
-      for (int i = 0; i < 4000; ++i) righted += verlet_step(m, 2e-4, state, workspace).righted;
+      for (int i = 0; i < 4000; ++i)
+        righted += verlet_step(m, initial_controls(m), 2e-4, state, workspace).righted;
       EXPECT_GT(righted, 0);
       EXPECT_LT(righted, 2000);
       const std::vector<Vec3> shape = rest_shape_at(m, m.bodies[0], state.position);

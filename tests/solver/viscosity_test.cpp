@@ -28,7 +28,7 @@ Model short_bar(const Material& material, Index k) {
   spec.materials = {material};
   spec.regions = {"all"};
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, spec);
   m.pins.push_back({"wall", test::nodes_at(m, 2, 0.0), {}});
   finish(m);
@@ -88,7 +88,7 @@ Swing measure(const Model& m, const std::vector<Vec3>& shape, double h,
 
 Swing measure_implicit(const Model& m, const std::vector<Vec3>& shape, double h) {
   ImplicitStepper stepper(m);
-  return measure(m, shape, h, [&](State& s) { stepper.step(h, {}, s); });
+  return measure(m, shape, h, [&](State& s) { stepper.step(h, initial_controls(m), {}, s); });
 }
 
 // zeta = eta omega / (2 mu) of every swing in shear, whatever the mesh.
@@ -114,8 +114,9 @@ TEST(Viscosity, IsTheSameToBothSteppers) {
   const std::vector<Vec3> shape = torsion(m);
   const Swing implicit = measure_implicit(m, shape, 0.004);
   Workspace workspace(m);
-  const double h = 0.2 * find_stable_step(m, m.rest_position, workspace).step;
-  const Swing verlet = measure(m, shape, h, [&](State& s) { verlet_step(m, h, s, workspace); });
+  const double h = 0.2 * find_stable_step(m, initial_controls(m), m.rest_position, workspace).step;
+  const Swing verlet =
+      measure(m, shape, h, [&](State& s) { verlet_step(m, initial_controls(m), h, s, workspace); });
   EXPECT_NEAR(implicit.zeta, verlet.zeta, 0.01 * verlet.zeta);
   EXPECT_NEAR(implicit.omega, verlet.omega, 0.01 * verlet.omega);
 }
@@ -123,15 +124,15 @@ TEST(Viscosity, IsTheSameToBothSteppers) {
 // A bar that falls under its own weight: what it loses is what the account says.
 TEST(Viscosity, HeatIsInTheEnergyAccount) {
   Model m = short_bar(viscous(0.3), 2);
-  m.gravity = Vec3(0.0, -9.81, 0.0);
+  m.start_gravity = Vec3(0.0, -9.81, 0.0);
   Workspace workspace(m);
-  const double stable = find_stable_step(m, m.rest_position, workspace).step;
+  const double stable = find_stable_step(m, initial_controls(m), m.rest_position, workspace).step;
   double drift[2];
   for (const int k : {0, 1}) {
     const double h = (k == 0 ? 0.4 : 0.2) * stable;
     State s = initial_state(m);
-    while (s.time < test::effort(0.3)) verlet_step(m, h, s, workspace);
-    const Energies e = measure_energies(m, s, workspace);
+    while (s.time < test::effort(0.3)) verlet_step(m, initial_controls(m), h, s, workspace);
+    const Energies e = measure_energies(m, initial_controls(m), s, workspace);
     EXPECT_GT(e.dissipated, 0.05 * e.elastic);
     drift[k] = std::abs(e.total()) / e.dissipated;
   }
@@ -139,14 +140,14 @@ TEST(Viscosity, HeatIsInTheEnergyAccount) {
   EXPECT_LT(drift[1], 0.05);
   ImplicitStepper stepper(m);
   State s = initial_state(m);
-  for (int i = 0; i < test::effort(150); ++i) stepper.step(0.002, {}, s);
-  const Energies e = measure_energies(m, s, workspace);
+  for (int i = 0; i < test::effort(150); ++i) stepper.step(0.002, initial_controls(m), {}, s);
+  const Energies e = measure_energies(m, initial_controls(m), s, workspace);
   EXPECT_LT(std::abs(e.total()), 0.05 * e.dissipated);
 }
 
 TEST(Viscosity, LetsAFreeBodyTurn) {  // a spin about a main axis goes on
   Model m = test::tissue_box(viscous(1.0), {2, 2, 2});
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   finish(m);
   State s = initial_state(m);
   for (std::size_t i = 0; i < s.position.size(); ++i) {
@@ -161,8 +162,8 @@ TEST(Viscosity, LetsAFreeBodyTurn) {  // a spin about a main axis goes on
   };
   const double before = spin();
   Workspace workspace(m);
-  const double h = 0.5 * find_stable_step(m, m.rest_position, workspace).step;
-  for (int i = 0; i < test::effort(2000); ++i) verlet_step(m, h, s, workspace);
+  const double h = 0.5 * find_stable_step(m, initial_controls(m), m.rest_position, workspace).step;
+  for (int i = 0; i < test::effort(2000); ++i) verlet_step(m, initial_controls(m), h, s, workspace);
   EXPECT_NEAR(spin(), before, 1e-3 * before);
 }
 

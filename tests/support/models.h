@@ -21,7 +21,7 @@ struct Point {
 // with add_limited, then call finish().
 inline Model point_masses(const std::vector<Point>& points) {
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   Body body;
   body.name = "points";
   body.nodes = {0, static_cast<Index>(points.size())};

@@ -17,7 +17,8 @@ inline Eigen::MatrixXd dense_tangent(const Model& model, const std::vector<Vec3>
   std::vector<Vec3> out(x.size());
   for (Eigen::Index column = 0; column < 3 * n; ++column) {
     u[static_cast<std::size_t>(column / 3)][column % 3] = 1.0;
-    stiffness_damping_times(model, x, 1.0, 0.0, u, Tangent::full, workspace, out);
+    stiffness_damping_times({model, initial_controls(model), x}, 1.0, 0.0, u, Tangent::full,
+                            workspace, out);
     u[static_cast<std::size_t>(column / 3)][column % 3] = 0.0;
     for (Eigen::Index i = 0; i < n; ++i) {
       K.block<3, 1>(3 * i, column) = out[static_cast<std::size_t>(i)];

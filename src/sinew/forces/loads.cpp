@@ -9,12 +9,6 @@ double load_share(const Load& load, double t) {
   return load.ramp > 0.0 ? std::min(1.0, (t - load.start) / load.ramp) : 1.0;
 }
 
-void add_load_forces(const Model& model, std::span<const Vec3> x, double time, double scale,
-                     std::span<Vec3> forces) {
-  for_each_load_force(model, x, time,
-                      [&](Index node, const Vec3& f) { forces[uz(node)] += scale * f; });
-}
-
 namespace {
 
 // Change of the volume between the faces and a point near them [m3].
@@ -29,11 +23,13 @@ double volume_change(std::span<const Vec3> X, std::span<const Vec3> x,
 
 }  // namespace
 
-double load_potential(const Model& model, std::span<const Vec3> x, double time, double scale) {
+double LoadTerm::energy(const Configuration& at) {
+  const Model& model = at.model;
+  const std::span<const Vec3> x = at.x;
   const std::span<const Vec3> X = model.rest_position;
   double potential = 0.0;
   for (const Load& load : model.loads) {
-    const double share = load_share(load, time);
+    const double share = load_share(load, at.time);
     if (share == 0.0) continue;
     const auto work_of = [&](const Vec3& force, Index node) {
       return model.inverse_mass[uz(node)] > 0.0 ? force.dot(x[uz(node)] - X[uz(node)]) : 0.0;
@@ -49,7 +45,7 @@ double load_potential(const Model& model, std::span<const Vec3> x, double time, 
     }
     potential += share * load.pressure * volume_change(X, x, load.faces);
   }
-  return scale * potential;
+  return potential;
 }
 
 }  // namespace sinew

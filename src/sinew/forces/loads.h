@@ -6,9 +6,7 @@
 //              along its inward normal, and as large as its area (Bonet and Wood 2008, 8.5)
 #pragma once
 
-#include <span>
-
-#include "sinew/model/model.h"
+#include "sinew/forces/term.h"
 
 namespace sinew {
 
@@ -42,15 +40,23 @@ void for_each_load_force(const Model& model, std::span<const Vec3> x, double tim
   }
 }
 
-// Adds the loads' forces at positions x and `time`, times `scale`, to `forces` [N] (nodes).
-void add_load_forces(const Model& model, std::span<const Vec3> x, double time, double scale,
-                     std::span<Vec3> forces);
+struct LoadTerm {
+  static constexpr Account account = Account::work;
+  static constexpr bool isotropic = true;
 
-// What the loads could still do [J], times `scale`, 0 at rest: its negative gradient by the free
-// nodes is their force. For a force or a traction -f . (x - X); for a pressure p times the change
-// of the volume under the faces. That is exact where the faces close a surface, or the nodes on the
-// rim of what they leave open are pinned; elsewhere a pressure that follows the surface has no
-// potential.
-double load_potential(const Model& model, std::span<const Vec3> x, double time, double scale);
+  // What the loads could still do, 0 at rest: its negative gradient by the free nodes is their
+  // force. For a force or a traction -f . (x - X); for a pressure p times the change of the volume
+  // under the faces. That is exact where the faces close a surface, or the nodes on the rim of what
+  // they leave open are pinned; elsewhere a pressure that follows the surface has no potential.
+  static double energy(const Configuration& at);
+  static void add_forces(const Configuration& at, std::span<Vec3> forces) {
+    for_each_load_force(at.model, at.x, at.time,
+                        [&](Index node, const Vec3& f) { forces[uz(node)] += f; });
+  }
+  // Forces and tractions are constant; a pressure changes with the surface, which the tangent
+  // leaves out.
+  template <class F>
+  static void for_each_element(const Configuration&, Tangent, const F&) {}
+};
 
 }  // namespace sinew

@@ -117,8 +117,8 @@ HWY_INLINE Three gravity_and_drag(const Model& model, const Three& gravity, cons
   return m * (gravity - drag * load(w));
 }
 
-double finish_range(const Model& model, const Vec3* w, Range nodes, Vec3* force) {
-  const Three gravity = load(model.gravity);
+double finish_range(const Model& model, const Vec3& g, const Vec3* w, Range nodes, Vec3* force) {
+  const Three gravity = load(g);
   double power = 0.0;
   for (auto i = uz(nodes.begin); i < uz(nodes.end); ++i) {
     if (model.inverse_mass[i] == 0.0) continue;
@@ -127,9 +127,9 @@ double finish_range(const Model& model, const Vec3* w, Range nodes, Vec3* force)
   return power;
 }
 
-double finish_nodes(const Model& model, const Vec3* w, std::span<const Index> nodes,
+double finish_nodes(const Model& model, const Vec3& g, const Vec3* w, std::span<const Index> nodes,
                     const float* given, Vec3* force) {
-  const Three gravity = load(model.gravity);
+  const Three gravity = load(g);
   double power = 0.0;
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (nodes[k] < 0) continue;
@@ -178,15 +178,15 @@ void frame_displacements(const Frame& frame, std::span<const Index> nodes, const
   HWY_DYNAMIC_DISPATCH(displacements)(frame, nodes, model, state, u, v);
 }
 
-double add_gravity_and_drag(const Model& model, const std::vector<Vec3>& w, Range nodes,
-                            std::vector<Vec3>& force) {
-  return HWY_DYNAMIC_DISPATCH(finish_range)(model, w.data(), nodes, force.data());
+double add_gravity_and_drag(const Model& model, const Vec3& gravity, const std::vector<Vec3>& w,
+                            Range nodes, std::vector<Vec3>& force) {
+  return HWY_DYNAMIC_DISPATCH(finish_range)(model, gravity, w.data(), nodes, force.data());
 }
 
-double add_gravity_and_drag(const Model& model, const std::vector<Vec3>& w,
+double add_gravity_and_drag(const Model& model, const Vec3& gravity, const std::vector<Vec3>& w,
                             std::span<const Index> nodes, const float* given,
                             std::vector<Vec3>& force) {
-  return HWY_DYNAMIC_DISPATCH(finish_nodes)(model, w.data(), nodes, given, force.data());
+  return HWY_DYNAMIC_DISPATCH(finish_nodes)(model, gravity, w.data(), nodes, given, force.data());
 }
 
 bool kick_and_drift(const Model& model, const std::vector<Vec3>& force, double kick, double h,

@@ -24,10 +24,10 @@ void frame_displacements(const Frame& frame, std::span<const Index> nodes, const
 
 // force = what is given, plus m (g - drag w) on the free nodes [N]; returns the power of the drag
 // [W]. Given are the forces themselves, of a range of nodes, ...
-double add_gravity_and_drag(const Model& model, const std::vector<Vec3>& w, Range nodes,
-                            std::vector<Vec3>& force);
+double add_gravity_and_drag(const Model& model, const Vec3& gravity, const std::vector<Vec3>& w,
+                            Range nodes, std::vector<Vec3>& force);
 // ... or four floats a node, of which -1 is none.
-double add_gravity_and_drag(const Model& model, const std::vector<Vec3>& w,
+double add_gravity_and_drag(const Model& model, const Vec3& gravity, const std::vector<Vec3>& w,
                             std::span<const Index> nodes, const float* given,
                             std::vector<Vec3>& force);
 

@@ -53,55 +53,31 @@ std::vector<Vec3> obstacle_centers(const Model& model, double time) {
   return centers;
 }
 
-double obstacle_energy(const Model& model, std::span<const Vec3> x, double time) {
-  const std::vector<Vec3> centers = obstacle_centers(model, time);
+double ObstacleTerm::energy(const Configuration& at) {
+  const Model& model = at.model;
+  const std::vector<Vec3> centers = obstacle_centers(model, at.time);
   return parallel_sum(static_cast<Index>(model.surface_share.size()), [&](Index i) {
     const auto n = uz(i);
     double energy = 0.0;
     for (std::size_t c = 0; c < centers.size() && model.inverse_mass[n] > 0.0; ++c) {
       const Obstacle& o = model.obstacles[c];
-      energy += obstacle_energy(x[n] - centers[c], o.radius, o.stiffness * model.surface_share[n]);
+      energy +=
+          obstacle_energy(at.x[n] - centers[c], o.radius, o.stiffness * model.surface_share[n]);
     }
     return energy;
   });
 }
 
-void add_obstacle_forces(const Model& model, std::span<const Vec3> x, double time,
-                         std::span<Vec3> forces) {
-  const std::vector<Vec3> centers = obstacle_centers(model, time);
+void ObstacleTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
+  const Model& model = at.model;
+  const std::vector<Vec3> centers = obstacle_centers(model, at.time);
   for_each_surface_node(model, [&](std::size_t n) {
     for (std::size_t c = 0; c < centers.size(); ++c) {
       const Obstacle& o = model.obstacles[c];
-      forces[n] += obstacle_push(x[n] - centers[c], o.radius, o.stiffness * model.surface_share[n]);
+      forces[n] +=
+          obstacle_push(at.x[n] - centers[c], o.radius, o.stiffness * model.surface_share[n]);
     }
   });
-}
-
-void add_obstacle_stiffness_times(const Model& model, std::span<const Vec3> x,
-                                  std::span<const Vec3> centers, double a, std::span<const Vec3> u,
-                                  bool only_stiffening, std::span<Vec3> out) {
-  const std::size_t count = std::min(centers.size(), model.obstacles.size());
-  for_each_surface_node(model, [&](std::size_t n) {
-    for (std::size_t c = 0; c < count; ++c) {
-      const Obstacle& o = model.obstacles[c];
-      out[n] +=
-          a * obstacle_stiffness_times(x[n] - centers[c], o.radius,
-                                       o.stiffness * model.surface_share[n], u[n], only_stiffening);
-    }
-  });
-}
-
-void add_obstacle_stiffness(const Model& model, const Vec3& x, std::span<const Vec3> centers,
-                            Index node, Mat3& block) {
-  if (uz(node) >= model.surface_share.size() || model.surface_share[uz(node)] == 0.0) return;
-  const std::size_t count = std::min(centers.size(), model.obstacles.size());
-  for (std::size_t c = 0; c < count; ++c) {
-    const Obstacle& o = model.obstacles[c];
-    for (int axis = 0; axis < 3; ++axis) {
-      block.col(axis) += obstacle_stiffness_times(
-          x - centers[c], o.radius, o.stiffness * model.surface_share[uz(node)], Vec3::Unit(axis));
-    }
-  }
 }
 
 std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const Vec3> x,

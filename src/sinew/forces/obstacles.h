@@ -15,8 +15,7 @@
 #include <string>
 #include <vector>
 
-#include "sinew/base/vec.h"
-#include "sinew/model/model.h"
+#include "sinew/forces/term.h"
 
 namespace sinew {
 
@@ -57,31 +56,46 @@ void add_mesh_obstacle(Model& model, Obstacle obstacle, std::span<const Vec3> ve
 // Where the obstacles' centres are at a time [m] (obstacles).
 std::vector<Vec3> obstacle_centers(const Model& model, double time);
 
-// Sum of W over nodes and obstacles [J].
-double obstacle_energy(const Model& model, std::span<const Vec3> x, double time);
+struct ObstacleTerm {
+  static constexpr Account account = Account::contact;
+  static constexpr bool isotropic = false;
 
-// Adds the obstacles' forces at positions x and `time` to `forces` [N] (nodes).
-void add_obstacle_forces(const Model& model, std::span<const Vec3> x, double time,
-                         std::span<Vec3> forces);
+  static double energy(const Configuration& at);
+  static void add_forces(const Configuration& at, std::span<Vec3> forces);
+  // One for every node that an obstacle presses.
+  template <class F>
+  static void for_each_element(const Configuration& at, Tangent tangent, const F& visit);
+  // Sum of k A of the obstacles; 0 but on the surface. A step that is stable with it is stable
+  // whichever nodes the obstacles come to touch.
+  static double most_stiffness(const Model& model, Index node) {
+    if (uz(node) >= model.surface_share.size()) return 0.0;
+    double sum = 0.0;
+    for (const Obstacle& o : model.obstacles) sum += o.stiffness * model.surface_share[uz(node)];
+    return sum;
+  }
+};
 
-// out += a H u, H the second derivative of W at positions x and with the obstacles at `centers`.
-// (The live view adds and removes an obstacle between steps: those without a centre yet do not
-// count.)
-void add_obstacle_stiffness_times(const Model& model, std::span<const Vec3> x,
-                                  std::span<const Vec3> centers, double a, std::span<const Vec3> u,
-                                  bool only_stiffening, std::span<Vec3> out);
-
-// block += H of one node at x, with the obstacles at `centers` [N/m].
-void add_obstacle_stiffness(const Model& model, const Vec3& x, std::span<const Vec3> centers,
-                            Index node, Mat3& block);
-
-// The most that obstacles can stiffen a node of the surface, sum of k A [N/m]; elsewhere 0. A step
-// that is stable with it is stable whichever nodes the obstacles come to touch.
-inline double largest_obstacle_stiffness(const Model& model, Index node) {
-  if (uz(node) >= model.surface_share.size()) return 0.0;
-  double sum = 0.0;
-  for (const Obstacle& o : model.obstacles) sum += o.stiffness * model.surface_share[uz(node)];
-  return sum;
+template <class F>
+void ObstacleTerm::for_each_element(const Configuration& at, Tangent tangent, const F& visit) {
+  const std::vector<Vec3> centers = obstacle_centers(at.model, at.time);
+  for (std::size_t c = 0; c < centers.size(); ++c) {
+    const Obstacle& o = at.model.obstacles[c];
+    if (o.hard()) continue;
+    for (Index node = 0; node < static_cast<Index>(at.model.surface_share.size()); ++node) {
+      const double k = o.stiffness * at.model.surface_share[uz(node)];
+      const Vec3 r = at.x[uz(node)] - centers[c];
+      if (k == 0.0 || at.model.inverse_mass[uz(node)] == 0.0 || r.norm() >= o.radius) continue;
+      Mat3 block;
+      for (int axis = 0; axis < 3; ++axis) {
+        block.col(axis) = obstacle_stiffness_times(r, o.radius, k, Vec3::Unit(axis),
+                                                   tangent == Tangent::only_stiffening);
+      }
+      // Along r the stiffness is k, across it -k (R / |r| - 1).
+      const double norm = k * std::max(1.0, o.radius / r.norm() - 1.0);
+      constexpr double one = 1.0;
+      visit(Element{{&node, 1}, {&one, 1}, block, norm});
+    }
+  }
 }
 
 // What an obstacle and the bodies do to each other.

@@ -7,8 +7,6 @@
 #include "sinew/base/parallel.h"
 #include "sinew/forces/packed.h"
 #include "sinew/forces/stiffness.h"
-#include "sinew/forces/tethers.h"
-#include "sinew/forces/ties.h"
 
 namespace sinew {
 namespace {
@@ -34,17 +32,19 @@ double largest_norm(std::span<const Vec3> u) {
 
 }  // namespace
 
-std::optional<PackedStiffness> PackedStiffness::at(const Model& model, const std::vector<Vec3>& x,
+std::optional<PackedStiffness> PackedStiffness::at(const Model& model, const Controls& controls,
+                                                   const std::vector<Vec3>& x,
                                                    Workspace& workspace) {
   const bool only_dashpots = std::all_of(model.stiffness.begin(), model.stiffness.end(),
                                          [](double k) { return k == 0.0; });
   if (!workspace.packed || !only_dashpots) return std::nullopt;
-  return PackedStiffness(model, x, workspace);
+  return PackedStiffness(model, controls, x, workspace);
 }
 
-PackedStiffness::PackedStiffness(const Model& model, const std::vector<Vec3>& x,
-                                 Workspace& workspace)
+PackedStiffness::PackedStiffness(const Model& model, const Controls& controls,
+                                 const std::vector<Vec3>& x, Workspace& workspace)
     : model_(model),
+      controls_(controls),
       x_(x),
       workspace_(workspace),
       longest_way_(way_in_edges * mean_edge(model)),
@@ -78,8 +78,7 @@ void PackedStiffness::times(double a, double b, std::span<const Vec3> u, std::sp
                  : Vec3((base_force_[n] - out[n]) / s +
                         outer_product(model_, a, b, u[n], i, Tangent::only_stiffening, workspace_));
   });
-  add_tether_stiffness_times(model_, a, u, out);
-  add_tie_stiffness_times(model_, a, u, out);
+  add_term_products({model_, controls_, x_}, Tangent::only_stiffening, a, u, out);
 }
 
 }  // namespace sinew

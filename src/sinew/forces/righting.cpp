@@ -162,7 +162,8 @@ void right_tangled_bodies(const Model& model, const State& state, double h, Work
   }
 }
 
-void lead_tangled_bodies(const Model& model, double h, const Workspace& workspace, State& state) {
+void lead_tangled_bodies(const Model& model, const Controls& controls, double h,
+                         const Workspace& workspace, State& state) {
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     if (workspace.tangled[b] == 0) continue;
     const Body& body = model.bodies[b];
@@ -170,7 +171,7 @@ void lead_tangled_bodies(const Model& model, double h, const Workspace& workspac
     const bool held = count_held(model, body) > 0;
     const Vec3 drift = held ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
     const double w = frequency(model, state, body, drift);
-    const Vec3 falling = held ? drift : Vec3(drift + h * model.gravity);
+    const Vec3 falling = held ? drift : Vec3(drift + h * controls.gravity);
     const double decay = std::exp(-w * h);
     parallel_for(body.nodes.size(), [&](Index k) {
       const auto i = uz(body.nodes.begin + k);

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "sinew/forces/workspace.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
@@ -39,7 +40,8 @@ void right_tangled_bodies(const Model& model, const State& state, double h, Work
 // The same pull over a step of any length, in closed form: on the free nodes of the bodies in
 // workspace.tangled,  x = g + (d + c h) e^-wh + v h,  d = x - g,  c = (v_i - v) + w d, with w not
 // limited; a body that nothing holds falls with gravity as a whole. Sets positions and velocities.
-void lead_tangled_bodies(const Model& model, double h, const Workspace& workspace, State& state);
+void lead_tangled_bodies(const Model& model, const Controls& controls, double h,
+                         const Workspace& workspace, State& state);
 
 // Takes the speed of the pull from the bodies of `which` (bodies; 0: none): the mean velocity is
 // left, or none where a node is held.

@@ -1,7 +1,6 @@
 #include "sinew/forces/springs.h"
 
 #include "sinew/base/parallel.h"
-#include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
 
 namespace sinew {
@@ -9,7 +8,6 @@ namespace sinew {
 Workspace::Workspace(const Model& model)
     : spring_force(model.springs.size()),
       force(model.rest_position.size(), Vec3::Zero()),
-      obstacle_center(obstacle_centers(model, 0.0)),
       viscous_force(model.viscous_node.size(), Vec3::Zero()) {
   if (!model.has_volume) return;
   // Vectors of Vec3 stay as they are until they are used: pages that nothing touches take no

@@ -2,11 +2,9 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/network.h"
-#include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/springs.h"
-#include "sinew/forces/tethers.h"
-#include "sinew/forces/ties.h"
+#include "sinew/forces/terms.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 
@@ -16,9 +14,26 @@ void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& w
   if (model.has_volume) compute_volume_pressures(model, x, workspace);
 }
 
-void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double a, double b,
-                             std::span<const Vec3> u, Tangent tangent, Workspace& workspace,
-                             std::span<Vec3> out) {
+double most_stiffness(const Model& model, Index node) {
+  double sum = 0.0;
+  for_each_type(Terms{}, [&](auto term) {
+    if constexpr (Bounded<decltype(term)>) sum += term.most_stiffness(model, node);
+  });
+  return sum;
+}
+
+void add_term_products(const Configuration& at, Tangent tangent, double a, std::span<const Vec3> u,
+                       std::span<Vec3> out) {
+  for_each_type(Terms{}, [&](auto term) {
+    if (Bounded<decltype(term)> && tangent == Tangent::only_stiffening) return;
+    add_stiffness_times(term, at, tangent, a, u, out);
+  });
+}
+
+void stiffness_damping_times(const Configuration& at, double a, double b, std::span<const Vec3> u,
+                             Tangent tangent, Workspace& workspace, std::span<Vec3> out) {
+  const Model& model = at.model;
+  const std::span<const Vec3> x = at.x;
   const bool only_stiffening = tangent == Tangent::only_stiffening;
   for (const Range& active : model.active_springs) {
     parallel_for(active.size(), [&](Index i) {
@@ -46,10 +61,7 @@ void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double
     if (network) out[n] -= a * network_pull(model, u, i);
     if (volume) out[n] -= gather_tets(model, workspace, i);
   });
-  if (!only_stiffening)
-    add_obstacle_stiffness_times(model, x, workspace.obstacle_center, a, u, false, out);
-  if (a != 0.0) add_tether_stiffness_times(model, a, u, out);
-  if (a != 0.0) add_tie_stiffness_times(model, a, u, out);
+  if (a != 0.0) add_term_products(at, tangent, a, u, out);
 }
 
 void prepare_outer_product(const Model& model, std::span<const Vec3> x, double b,
@@ -62,7 +74,7 @@ Vec3 outer_product(const Model& model, double a, double b, const Vec3& u, Index 
   Vec3 out = b * model.drag[uz(i)] * model.mass[uz(i)] * u;
   if (!model.tet_viscosity.empty() && b != 0.0) out -= b * gather_viscous(model, workspace, i);
   if (tangent == Tangent::only_stiffening && !model.obstacles.empty()) {
-    out += a * largest_obstacle_stiffness(model, i) * u;
+    out += a * most_stiffness(model, i) * u;
   }
   return out;
 }

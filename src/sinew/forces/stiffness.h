@@ -2,34 +2,35 @@
 #pragma once
 
 #include <span>
-#include <vector>
 
+#include "sinew/forces/term.h"
 #include "sinew/forces/workspace.h"
-#include "sinew/model/model.h"
 
 namespace sinew {
-
-// Which tangent: the true one; or, of the classic springs, the one without the negative transverse
-// part of compressed springs, which is positive semidefinite, and with obstacles pressing on every
-// node of the surface: what the step has to be stable for.
-enum class Tangent { full, only_stiffening };
 
 // Call before the products below whenever x has changed: keeps the pressures at x in the workspace.
 void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& workspace);
 
-// out = (a K + b C) u at positions x: K the second derivative of the energies of springs,
-// network, volume and obstacles (where compute_forces last saw them), C the dashpots, the
-// viscosity and the drag.
-// Nodes whose motion is given get 0; their u counts.
-void stiffness_damping_times(const Model& model, std::span<const Vec3> x, double a, double b,
-                             std::span<const Vec3> u, Tangent tangent, Workspace& workspace,
-                             std::span<Vec3> out);
+// out = (a K + b C) u: K the second derivative of the energies of springs, network, volume and all
+// terms, C the dashpots, the viscosity and the drag. Nodes whose motion is given get 0; their u
+// counts. With Tangent::only_stiffening the springs go without the negative transverse part of
+// those that are compressed.
+void stiffness_damping_times(const Configuration& at, double a, double b, std::span<const Vec3> u,
+                             Tangent tangent, Workspace& workspace, std::span<Vec3> out);
 
-// What is in (a K + b C) u besides springs, network and volume, of node i: drag, viscosity and,
-// where only what stiffens counts, obstacles. To be called after prepare_outer_product().
+// What is in (a K + b C) u of node i besides springs, network, volume and the terms' elements:
+// drag, viscosity and, where only what stiffens counts, the most that bounded terms stiffen it. To
+// be called after prepare_outer_product().
 void prepare_outer_product(const Model& model, std::span<const Vec3> x, double b,
                            std::span<const Vec3> u, Workspace& workspace);
 Vec3 outer_product(const Model& model, double a, double b, const Vec3& u, Index i, Tangent tangent,
                    const Workspace& workspace);
+
+// out += a K u of the terms' elements on the free nodes.
+void add_term_products(const Configuration& at, Tangent tangent, double a, std::span<const Vec3> u,
+                       std::span<Vec3> out);
+
+// The most that bounded terms stiffen the node [N/m].
+double most_stiffness(const Model& model, Index node);
 
 }  // namespace sinew

@@ -1,14 +1,10 @@
 #include "sinew/forces/terms.h"
 
 #include "sinew/base/parallel.h"
-#include "sinew/forces/loads.h"
 #include "sinew/forces/network.h"
 #include "sinew/forces/node_kernels.h"
-#include "sinew/forces/obstacles.h"
 #include "sinew/forces/packed.h"
 #include "sinew/forces/springs.h"
-#include "sinew/forces/tethers.h"
-#include "sinew/forces/ties.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
@@ -18,19 +14,19 @@ namespace sinew {
 
 namespace {
 
-// Minus the work of gravity and loads on the free nodes since the rest positions [J].
-double outer_potential(const Model& model, const State& state) {
-  const double gravity = parallel_sum(model.node_count(), [&](Index i) {
-    const auto k = uz(i);
-    if (model.inverse_mass[k] == 0.0) return 0.0;
-    return -model.mass[k] * model.gravity.dot(state.position[k] - model.rest_position[k]);
+// Energy of the terms of that account [J].
+double energy_of(Account account, const Configuration& at) {
+  double sum = 0.0;
+  for_each_type(Terms{}, [&](auto term) {
+    if (term.account == account) sum += term.energy(at);
   });
-  return gravity + load_potential(model, state.position, state.time, 1.0);
+  return sum;
 }
 
 }  // namespace
 
-double compute_forces(const Model& model, const State& state, Workspace& workspace) {
+double compute_forces(const Model& model, const Controls& controls, const State& state,
+                      Workspace& workspace) {
   double power = 0.0;
   const bool viscous = !model.tet_viscosity.empty();
   if (viscous) {
@@ -43,8 +39,8 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
     workspace.has_tets = false;
     workspace.partial.assign(uz(packed.patch_count()), 0.0);
     packed.for_each_patch([&](Index patch, std::span<const Index> nodes, const float* force) {
-      workspace.partial[uz(patch)] =
-          add_gravity_and_drag(model, state.half_velocity, nodes, force, workspace.force);
+      workspace.partial[uz(patch)] = add_gravity_and_drag(
+          model, controls.gravity, state.half_velocity, nodes, force, workspace.force);
     });
   } else {
     power += compute_spring_forces(model, state, workspace);
@@ -59,7 +55,7 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
         workspace.force[uz(i)] = f;
       }
       workspace.partial[uz(b)] =
-          add_gravity_and_drag(model, state.half_velocity, r, workspace.force);
+          add_gravity_and_drag(model, controls.gravity, state.half_velocity, r, workspace.force);
     });
   }
   if (viscous) {
@@ -68,11 +64,8 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
   }
   for (const double p : workspace.partial) power += p;
 
-  add_tie_forces(model, state.position, workspace.force);
-  add_load_forces(model, state.position, state.time, 1.0, workspace.force);
-  add_obstacle_forces(model, state.position, state.time, workspace.force);
-  add_tether_forces(model, state.position, workspace.force);
-  workspace.obstacle_center = obstacle_centers(model, state.time);
+  const Configuration at = configuration(model, controls, state);
+  for_each_type(Terms{}, [&](auto term) { term.add_forces(at, workspace.force); });
   return power;
 }
 
@@ -94,29 +87,31 @@ std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
   return v;
 }
 
-double elastic_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
-  return spring_energy(model, x) + network_energy(model, x) + tie_energy(model, x) +
-         volume_energy(model, x, workspace);
+double elastic_energy(const Configuration& at, Workspace& workspace) {
+  return spring_energy(at.model, at.x) + network_energy(at.model, at.x) +
+         energy_of(Account::elastic, at) + volume_energy(at.model, at.x, workspace);
 }
 
-std::vector<Vec3> outer_forces(const Model& model, const State& state) {
+std::vector<Vec3> outer_forces(const Model& model, const Controls& controls, const State& state) {
   std::vector<Vec3> f(model.rest_position.size(), Vec3::Zero());
-  parallel_for(model.node_count(), [&](Index i) {
-    if (model.inverse_mass[uz(i)] > 0.0) f[uz(i)] = model.mass[uz(i)] * model.gravity;
+  const Configuration at = configuration(model, controls, state);
+  GravityTerm::add_forces(at, f);
+  for_each_type(Terms{}, [&](auto term) {
+    if (term.account != Account::elastic) term.add_forces(at, f);
   });
-  add_load_forces(model, state.position, state.time, 1.0, f);
-  add_obstacle_forces(model, state.position, state.time, f);
-  add_tether_forces(model, state.position, f);
   return f;
 }
 
-double potential_energy(const Model& model, const State& state, Workspace& workspace) {
-  return elastic_energy(model, state.position, workspace) + outer_potential(model, state) +
-         obstacle_energy(model, state.position, state.time) + tether_energy(model, state.position);
+double potential_energy(const Model& model, const Controls& controls, const State& state,
+                        Workspace& workspace) {
+  const Configuration at = configuration(model, controls, state);
+  return elastic_energy(at, workspace) + (GravityTerm::energy(at) + energy_of(Account::work, at)) +
+         energy_of(Account::contact, at);
 }
 
-Energies measure_energies(const Model& model, const State& state, Workspace& workspace) {
-  compute_forces(model, state, workspace);
+Energies measure_energies(const Model& model, const Controls& controls, const State& state,
+                          Workspace& workspace) {
+  compute_forces(model, controls, state, workspace);
   if (model.has_volume && !workspace.has_tets) {
     compute_pressures(model, state.position, workspace);
   }
@@ -126,14 +121,10 @@ Energies measure_energies(const Model& model, const State& state, Workspace& wor
     const auto k = uz(i);
     return model.inverse_mass[k] > 0.0 ? 0.5 * model.mass[k] * v[k].squaredNorm() : 0.0;
   });
-  e.gravity = parallel_sum(model.node_count(), [&](Index i) {
-    const auto k = uz(i);
-    if (model.inverse_mass[k] == 0.0) return 0.0;
-    return -model.mass[k] * model.gravity.dot(state.position[k] - model.rest_position[k]);
-  });
-  e.elastic = elastic_energy(model, state.position, workspace);
-  e.contact =
-      obstacle_energy(model, state.position, state.time) + tether_energy(model, state.position);
+  const Configuration at = configuration(model, controls, state);
+  e.gravity = GravityTerm::energy(at) + energy_of(Account::gravity, at);
+  e.elastic = elastic_energy(at, workspace);
+  e.contact = energy_of(Account::contact, at);
   e.dissipated = state.energy.dissipated;
   e.work_in = state.energy.work_in;
   return e;

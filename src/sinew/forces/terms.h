@@ -1,20 +1,42 @@
-// The list of terms: everything that pulls on a node, and every energy, in one place. A new force
-// is added here (docs/adding-a-force.md).
+// The list of terms, and what all of them do together: forces, energies, tangent. A new force is
+// one word in this list (docs/adding-a-force.md).
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "sinew/forces/grabs.h"
+#include "sinew/forces/loads.h"
+#include "sinew/forces/material_terms.h"
+#include "sinew/forces/obstacles.h"
+#include "sinew/forces/term.h"
+#include "sinew/forces/ties.h"
 #include "sinew/forces/workspace.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
 
+// Everything with a potential that is not the material's own or gravity. All else follows: forces,
+// energies, products, the tangent matrix, the stable step, which bodies are joined, and the tests.
+using Terms = TypeList<TieTerm, LoadTerm, ObstacleTerm, GrabTerm>;
+
+// What the loops of a step compute at once: these, with dashpots, viscosity and drag
+// (forces/springs.h, network.h, volume.h, viscosity.h; in single precision forces/packed.h).
+using FusedTerms = TypeList<SpringTerm, NetworkTerm, VolumeTerm, GravityTerm>;
+
 // Fills workspace.force with the total force on every node [N]: springs, dashpots, network, volume,
-// viscosity, gravity, drag, loads and obstacles at state.time, tethers. Pinned nodes and anchors
+// viscosity, gravity, drag, loads and obstacles at state.time, grabs. Pinned nodes and anchors
 // get only what the material pulls. Returns the power [W] that dashpots, viscosity and drag turn
 // into heat.
-double compute_forces(const Model& model, const State& state, Workspace& workspace);
+double compute_forces(const Model& model, const Controls& controls, const State& state,
+                      Workspace& workspace);
+
+// Where the state is.
+inline Configuration configuration(const Model& model, const Controls& controls,
+                                   const State& state) {
+  return {model, controls, state.position, state.time};
+}
 
 // The talk's velocity, v(t) = (x(t+h) - x(t-h)) / 2h = w + a h / 2, with w the half-step velocity
 // before t and h the last step; where the motion is given (pins) the half-step velocity itself.
@@ -22,29 +44,31 @@ double compute_forces(const Model& model, const State& state, Workspace& workspa
 std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
                                        const Workspace& workspace);
 
-// What springs, network and volume store at positions x [J]; 0 at rest.
-double elastic_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace);
+// What springs, network, volume and ties store [J]; 0 at rest.
+double elastic_energy(const Configuration& at, Workspace& workspace);
 
 // What the rest state minimises [J]: elastic energy plus that of gravity, and of the loads and
-// obstacles at state.time and the tethers, 0 at the rest positions.
-double potential_energy(const Model& model, const State& state, Workspace& workspace);
+// obstacles at state.time and the grabs, 0 at the rest positions.
+double potential_energy(const Model& model, const Controls& controls, const State& state,
+                        Workspace& workspace);
 
-// Gravity, the loads and obstacles at state.time, and the tethers on the free nodes [N], 0 on the
+// Gravity, the loads and obstacles at state.time, and the grabs on the free nodes [N], 0 on the
 // others.
-std::vector<Vec3> outer_forces(const Model& model, const State& state);
+std::vector<Vec3> outer_forces(const Model& model, const Controls& controls, const State& state);
 
 struct Energies {
   double kinetic = 0.0;     // [J] of the nodes that are free to move, with the talk's velocity
   double elastic = 0.0;     // [J] in springs, network and volume
   double gravity = 0.0;     // [J] of the free nodes, 0 at their rest positions
-  double contact = 0.0;     // [J] between bodies and obstacles or tethers
+  double contact = 0.0;     // [J] between bodies and obstacles or grabs
   double dissipated = 0.0;  // [J] since the start
   double work_in = 0.0;     // [J] since the start
   // What the account leaves unexplained: kinetic + elastic + gravity + contact + dissipated -
   // work_in is constant up to the step's error.
   double total() const { return kinetic + elastic + gravity + contact + dissipated - work_in; }
 };
-Energies measure_energies(const Model& model, const State& state, Workspace& workspace);
+Energies measure_energies(const Model& model, const Controls& controls, const State& state,
+                          Workspace& workspace);
 
 // Current volume of the body's tets over their rest volume [-].
 double volume_ratio(const Model& model, const Body& body, const std::vector<Vec3>& x);

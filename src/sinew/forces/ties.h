@@ -10,9 +10,7 @@
 // docs/methods/ties.md.
 #pragma once
 
-#include <span>
-
-#include "sinew/model/model.h"
+#include "sinew/forces/term.h"
 
 namespace sinew {
 
@@ -23,28 +21,29 @@ inline Vec3 tie_offset(const Tie& tie, std::span<const Vec3> x) {
   return r;
 }
 
-// Sum of W [J].
-double tie_energy(const Model& model, std::span<const Vec3> x);
+struct TieTerm {
+  static constexpr Account account = Account::elastic;
+  static constexpr bool isotropic = true;
 
-// Adds what the ties do to the nodes, pinned ones included [N] (nodes).
-void add_tie_forces(const Model& model, std::span<const Vec3> x, std::span<Vec3> forces);
-
-// out += a H u on the free nodes, H the second derivative of W.
-void add_tie_stiffness_times(const Model& model, double a, std::span<const Vec3> u,
-                             std::span<Vec3> out);
-
-// Calls f(i, j, k_ij [N/m]) for the springs that the ties are made of, k_ij of either sign.
-template <typename F>
-void for_each_tie_pair(const Model& model, const F& f) {
-  for (const Tie& tie : model.ties) {
-    for (std::size_t a = 0; a < tie.node.size(); ++a) {
-      for (std::size_t b = 0; b < a; ++b) {
-        const double k = -tie.stiffness * tie.weight[a] * tie.weight[b];
-        if (k != 0.0) f(tie.node[a], tie.node[b], k);
-      }
+  static double energy(const Configuration& at) {
+    double sum = 0.0;
+    for (const Tie& tie : at.model.ties)
+      sum += 0.5 * tie.stiffness * tie_offset(tie, at.x).squaredNorm();
+    return sum;
+  }
+  static void add_forces(const Configuration& at, std::span<Vec3> forces) {
+    for (const Tie& tie : at.model.ties) {
+      const Vec3 pull = tie.stiffness * tie_offset(tie, at.x);
+      for (std::size_t a = 0; a < tie.node.size(); ++a)
+        forces[uz(tie.node[a])] -= tie.weight[a] * pull;
     }
   }
-}
+  template <class F>
+  static void for_each_element(const Configuration& at, Tangent, const F& visit) {
+    for (const Tie& tie : at.model.ties)
+      visit(Element{tie.node, tie.weight, tie.stiffness * Mat3::Identity(), tie.stiffness});
+  }
+};
 
 // Ties a node to where it is in the tet of other nodes, at rest. stiffness [N/m] > 0.
 void add_tie(Model& model, Index node, const Tet& tet, double stiffness);

@@ -23,10 +23,9 @@ struct Workspace {
   std::shared_ptr<ExplicitContacts> contacts;
   std::vector<Vec3> before;  // positions before the move [m] (nodes)
 
-  std::vector<Vec3> spring_force;     // on end 0 of each spring [N] (springs)
-  std::vector<Vec3> force;            // total on each node [N] (nodes)
-  std::vector<double> partial;        // sums of blocks, whatever they are of
-  std::vector<Vec3> obstacle_center;  // where compute_forces last saw them [m] (obstacles)
+  std::vector<Vec3> spring_force;  // on end 0 of each spring [N] (springs)
+  std::vector<Vec3> force;         // total on each node [N] (nodes)
+  std::vector<double> partial;     // sums of blocks, whatever they are of
 
   std::vector<Vec3> viscous_force;  // on a node of a viscous cell [N] (slots)
 

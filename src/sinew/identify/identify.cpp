@@ -1,6 +1,10 @@
 #include "sinew/identify/identify.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -10,6 +14,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/identify/calibrate.h"
 #include "sinew/mesh/surface.h"
+#include "sinew/model/material_words.h"
 #include "sinew/solver/stable_step.h"
 #include "sinew/solver/static.h"
 #include "sinew/solver/verlet.h"
@@ -17,28 +22,36 @@
 namespace sinew {
 namespace {
 
-Material material_of(const AskedMaterial& asked, const std::string& law) {
+// A law that can be identified, with what makes a material one of it.
+struct IdentifiableLaw {
+  std::string_view name;
+  Law law = Law::neo_hookean;
+  double beta = -1.0;
+  Volume volume = Volume::by_law;
+};
+
+constexpr std::array<IdentifiableLaw, 5> identifiable = {
+    {{word_of(Law::neo_hookean)},
+     {"linear-fem", Law::neo_hookean, 1.0, Volume::tet},
+     {word_of(Law::calibrated), Law::calibrated},
+     {word_of(Law::lloyd), Law::lloyd},
+     {word_of(Law::vangelder), Law::vangelder}}};
+
+Material material_of(const AskedMaterial& asked, const IdentifiableLaw& law) {
   Material m;
   m.young = asked.young;
   m.poisson = asked.poisson;
   m.density = asked.density;
   m.damping_ratio = asked.damping_ratio;
-  if (law == "linear-fem") {
-    m.beta = 1.0;
-    m.volume = Volume::tet;
-  } else if (law == "calibrated") {
-    m.law = Law::calibrated;
-  } else if (law == "lloyd") {
-    m.law = Law::lloyd;
-  } else if (law == "vangelder") {
-    m.law = Law::vangelder;
-  }
+  m.law = law.law;
+  m.beta = law.beta;
+  m.volume = law.volume;
   return m;
 }
 
 Model free_body(const BodySpec& body) {
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, body);
   return m;
 }
@@ -51,7 +64,7 @@ double time_of_step(const Model& model, double h) {
   std::vector<double> times;
   for (int k = 0; k < 25; ++k) {
     const Clock::time_point start = Clock::now();
-    verlet_step(model, h, state, workspace);
+    verlet_step(model, initial_controls(model), h, state, workspace);
     times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
   }
   std::nth_element(times.begin(), times.begin() + 12, times.end());
@@ -99,8 +112,8 @@ StressCurve measure_curve(const BodySpec& body, const AskedMaterial& asked) {
     options.tolerance = 1e-4;
     double stress = std::numeric_limits<double>::quiet_NaN();
     try {
-      solver.solve(1.0, options, state);
-      compute_forces(model, state, solver.workspace());
+      solver.solve(initial_controls(model), 1.0, options, state);
+      compute_forces(model, initial_controls(model), state, solver.workspace());
       stress = 0.0;
       for (const Index i : surface.nodes) {
         stress -= solver.workspace().force[uz(i)].z() * model.rest_position[uz(i)].z();
@@ -117,22 +130,26 @@ StressCurve measure_curve(const BodySpec& body, const AskedMaterial& asked) {
 }  // namespace
 
 std::vector<std::string> identifiable_laws() {
-  return {"neo-hookean", "linear-fem", "calibrated", "lloyd", "vangelder"};
+  std::vector<std::string> names;
+  for (const IdentifiableLaw& law : identifiable) names.emplace_back(law.name);
+  return names;
 }
 
 LawIdentity identify_law(const TetMesh& mesh, const AskedMaterial& asked, const std::string& law,
                          bool with_curve) {
-  const std::vector<std::string> known = identifiable_laws();
-  if (std::find(known.begin(), known.end(), law) == known.end()) {
-    throw Error(ErrorKind::usage, "'" + law + "' is no law that can be identified",
-                "one of: all, neo-hookean, linear-fem, calibrated, lloyd, vangelder");
+  const auto known =
+      std::find_if(identifiable.begin(), identifiable.end(),
+                   [&](const IdentifiableLaw& candidate) { return candidate.name == law; });
+  if (known == identifiable.end()) {
+    throw Error(ErrorKind::usage, fmt::format("'{}' is no law that can be identified", law),
+                fmt::format("one of: all, {}", fmt::join(identifiable_laws(), ", ")));
   }
   LawIdentity identity;
   identity.law = law;
   BodySpec body;
   body.name = "mesh";
   body.mesh = mesh;
-  body.materials = {material_of(asked, law)};
+  body.materials = {material_of(asked, *known)};
   body.regions = {"all"};
   try {
     calibrate_materials(body);
@@ -145,7 +162,8 @@ LawIdentity identify_law(const TetMesh& mesh, const AskedMaterial& asked, const 
   Model model = free_body(body);
   finish(model);
   Workspace workspace(model);
-  identity.stable_step = find_stable_step(model, model.rest_position, workspace).step;
+  identity.stable_step =
+      find_stable_step(model, initial_controls(model), model.rest_position, workspace).step;
   identity.step_seconds = time_of_step(model, 0.5 * identity.stable_step);
   if (with_curve) identity.curve = measure_curve(body, asked);
   return identity;

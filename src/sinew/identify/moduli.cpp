@@ -44,7 +44,7 @@ std::vector<Index> surface_nodes(const TetMesh& mesh) {
 
 Model body_alone(const BodySpec& body, bool hold_surface) {
   Model m;
-  m.gravity = Vec3::Zero();
+  m.start_gravity = Vec3::Zero();
   add_body(m, body);
   if (hold_surface) m.pins.push_back({"surface", surface_nodes(body.mesh), {}});
   finish(m);
@@ -61,13 +61,14 @@ Mat6 by_tractions(const BodySpec& body, double tolerance) {
       area[uz(model.tets[t][a])] += model.rest_volume[t] * g[a];
     }
   }
+  const Controls controls;  // no gravity
   StaticSolver solver(model);
   Mat6 compliance;
   for (int k = 0; k < 6; ++k) {
     Field f(area.size());
     for (std::size_t a = 0; a < area.size(); ++a) f[a] = unit_stress(k) * area[a];
     Field u(area.size(), Vec3::Zero());
-    solver.solve_tangent(model.rest_position, f, tolerance, u);
+    solver.solve_tangent({model, controls, model.rest_position}, f, tolerance, u);
     Mat3 gradient = Mat3::Zero();
     for (std::size_t a = 0; a < area.size(); ++a) gradient += u[a] * area[a].transpose();
     const Mat3 strain = 0.5 * (gradient + gradient.transpose()) / model.bodies[0].rest_volume;
@@ -83,6 +84,7 @@ Mat6 by_tractions(const BodySpec& body, double tolerance) {
 Mat6 by_displacements(const BodySpec& body, double tolerance) {
   const Model held = body_alone(body, true);
   const Model free = body_alone(body, false);
+  const Controls controls;  // no gravity
   StaticSolver solver(held);
   Workspace workspace(free);
   prepare_stiffness(free, free.rest_position, workspace);
@@ -92,9 +94,9 @@ Mat6 by_displacements(const BodySpec& body, double tolerance) {
     Field u(X.size());
     for (std::size_t a = 0; a < X.size(); ++a) u[a] = unit_strain(k) * X[a];
     const Field none(X.size(), Vec3::Zero());
-    solver.solve_tangent(X, none, tolerance, u);
+    solver.solve_tangent({held, controls, X}, none, tolerance, u);
     Field f(X.size());
-    stiffness_damping_times(free, X, 1.0, 0.0, u, Tangent::full, workspace, f);
+    stiffness_damping_times({free, controls, X}, 1.0, 0.0, u, Tangent::full, workspace, f);
     Mat3 stress = Mat3::Zero();
     for (std::size_t a = 0; a < X.size(); ++a) stress += f[a] * X[a].transpose();
     stress = 0.5 * (stress + stress.transpose().eval()) / free.bodies[0].rest_volume;

@@ -6,12 +6,14 @@
 // Written: one Piece, tets first, then faces. ParaView and meshio read it.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "sinew/base/words.h"
 #include "sinew/mesh/tet_mesh.h"
 
 namespace sinew::io {
@@ -20,6 +22,11 @@ namespace sinew::io {
 TetMesh parse_vtu(std::string_view bytes, const std::string& name);
 
 enum class VtuEncoding { ascii, base64, zlib };  // zlib: compressed, then Base64
+constexpr std::array<Word<VtuEncoding>, 3> words_of(VtuEncoding) {
+  return {{{VtuEncoding::zlib, "zlib"},
+           {VtuEncoding::base64, "base64"},
+           {VtuEncoding::ascii, "ascii"}}};
+}
 
 template <typename T>
 struct VtuArray {

@@ -22,6 +22,10 @@ double largest_modulus(const Model& model) {
   return most == model.tet_modulus.end() ? 0.0 : 3.0 * *most;
 }
 
+double energy_of_obstacles(const Model& model, const State& state) {
+  return ObstacleTerm::energy({model, Controls{}, state.position, state.time});
+}
+
 }  // namespace
 
 // A step is stable when no node is pressed harder than what the model's stiffest mode allows.
@@ -38,7 +42,7 @@ double Ball::pressure(const Model& model) const {
 
 // Writes the obstacle anew. What that changes in its energy is work of the hand that holds it.
 void Ball::put(Model& model, State& state, const Path& path, double radius) {
-  const double before = obstacle_energy(model, state.position, state.time);
+  const double before = energy_of_obstacles(model, state);
   if (there_) model.obstacles.pop_back();
   obstacle_.name = "the ball";
   obstacle_.center = Vec3::Zero();
@@ -48,7 +52,7 @@ void Ball::put(Model& model, State& state, const Path& path, double radius) {
   add_obstacle(model, obstacle_);
   obstacle_.stiffness = model.obstacles.back().stiffness = pressure(model);
   there_ = true;
-  state.energy.work_in += obstacle_energy(model, state.position, state.time) - before;
+  state.energy.work_in += energy_of_obstacles(model, state) - before;
 }
 
 void Ball::move(Model& model, State& state, const Vec3& point, double radius, double size) {
@@ -62,10 +66,10 @@ void Ball::move(Model& model, State& state, const Vec3& point, double radius, do
 
 void Ball::remove(Model& model, State& state) {
   if (!there_) return;
-  const double before = obstacle_energy(model, state.position, state.time);
+  const double before = energy_of_obstacles(model, state);
   model.obstacles.pop_back();
   there_ = false;
-  state.energy.work_in += obstacle_energy(model, state.position, state.time) - before;
+  state.energy.work_in += energy_of_obstacles(model, state) - before;
 }
 
 void Ball::follow(Model& model, State& state, double interval) {

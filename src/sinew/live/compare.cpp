@@ -59,8 +59,8 @@ void Simulation::act(const SetCompare& c) {
   other->rebuild(other->scene_, &run_.state);
   other->hands_ = hands_;
   other->ball_ = ball_;
-  const double stable = other->run_.stable_step > 0.0 ? other->run_.stable_step : no_limit;
-  other->hands_.hold(*other->model_, other->run_.state, stable);
+  const double stable = other->run_.memory.stable_step;
+  other->hands_.hold(*other->model_, other->controls_, other->run_.state, stable);
   other->ball_.hold(*other->model_, other->run_.state, stable);
   other->topology_ = topology_;
   other_ = std::move(other);
@@ -113,7 +113,7 @@ bool Simulation::catch_up(Clock::time_point deadline, const std::atomic<bool>* h
     if (ahead_ && !finished) return false;
   }
   if (ahead_) {
-    other_->hands_.follow(*other_->model_, other_->run_.state, size());
+    other_->hands_.follow(*other_->model_, other_->controls_, other_->run_.state, size());
     other_->ball_.follow(*other_->model_, other_->run_.state, 1.0 / frames_per_second);
   }
   note_pair();

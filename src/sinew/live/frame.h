@@ -9,6 +9,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/live/command.h"
 #include "sinew/live/quantity.h"
+#include "sinew/sim/run_counters.h"
 
 namespace sinew::live {
 
@@ -53,8 +54,8 @@ struct Status {
   std::int64_t step = 0;     // steps taken
   double dt = 0.0;           // the step now taken [s]
   double stable_step = 0.0;  // the largest explicit one when last looked at [s]; infinity: any
-  std::string stepper;       // verlet, implicit
-  std::string reason;        // of stepper = "auto": why
+  StepperKind stepper = StepperKind::verlet;
+  std::string reason;  // of stepper = "auto": why
   double time_scale = 1.0;
   double rate = 0.0;      // simulated seconds per second, over the last half second [-]; paused 0
   double capacity = 0.0;  // what it could be without waiting for the clock [-]
@@ -66,8 +67,7 @@ struct Status {
   Energies energy;
   double volume_ratio = 1.0;                     // of all bodies [-]
   double max_stretch = 0.0, max_compress = 0.0;  // [-]
-  std::int64_t contacts = 0;                     // in the last step, of whatever touches
-  double deepest = 0.0;                          // penetration since the start [m]
+  RunCounters counters;                          // since the start, or since a value was changed
   std::int64_t inverted_tets = 0;
   std::vector<HandStatus> hands;
   std::vector<Vec3> probes;             // their displacements [m], in the scene's order

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "sinew/forces/tethers.h"
+#include "sinew/forces/grabs.h"
 
 namespace sinew::live {
 namespace {
@@ -30,7 +30,7 @@ double mean_young(const Model& model, const Body& body) {
   return sum / body.rest_volume;
 }
 
-double weight_per_length(const Model& model, const Body& body) {
+double weight_per_length(const Model& model, const Vec3& gravity, const Body& body) {
   double mass = 0.0;
   Vec3 low = model.rest_position[uz(body.nodes.begin)];
   Vec3 high = low;
@@ -39,13 +39,13 @@ double weight_per_length(const Model& model, const Body& body) {
     low = low.cwiseMin(model.rest_position[uz(i)]);
     high = high.cwiseMax(model.rest_position[uz(i)]);
   }
-  return mass * model.gravity.norm() / (reach * (high - low).norm());
+  return mass * gravity.norm() / (reach * (high - low).norm());
 }
 
 }  // namespace
 
-void Hands::grab(Model& model, State& state, int hand, Index node, const Vec3& point,
-                 double radius) {
+void Hands::grab(const Model& model, Controls& controls, State& state, int hand, Index node,
+                 const Vec3& point, double radius) {
   Hand& h = hands_[uz(hand)];
   h = {};
   h.radius = radius;
@@ -61,7 +61,7 @@ void Hands::grab(Model& model, State& state, int hand, Index node, const Vec3& p
   }
   const double sum = std::accumulate(h.share.begin(), h.share.end(), 0.0);
   for (double& share : h.share) share /= sum;
-  apply(model, state);
+  apply(model, controls, state);
 }
 
 void Hands::approach(Hand& hand, double size) {
@@ -70,67 +70,69 @@ void Hands::approach(Hand& hand, double size) {
   hand.target = way.norm() <= most ? hand.point : Vec3(hand.target + most / way.norm() * way);
 }
 
-void Hands::drag(Model& model, State& state, int hand, const Vec3& point, double size) {
+void Hands::drag(const Model& model, Controls& controls, State& state, int hand, const Vec3& point,
+                 double size) {
   Hand& h = hands_[uz(hand)];
   if (h.nodes.empty()) return;
   h.point = point;
   approach(h, size);
-  apply(model, state);
+  apply(model, controls, state);
 }
 
-void Hands::follow(Model& model, State& state, double size) {
+void Hands::follow(const Model& model, Controls& controls, State& state, double size) {
   bool moved = false;
   for (Hand& h : hands_) {
     if (h.nodes.empty() || h.target == h.point) continue;
     approach(h, size);
     moved = true;
   }
-  if (moved) apply(model, state);
+  if (moved) apply(model, controls, state);
 }
 
-void Hands::release(Model& model, State& state, int hand) {
+void Hands::release(const Model& model, Controls& controls, State& state, int hand) {
   hands_[uz(hand)] = {};
-  apply(model, state);
+  apply(model, controls, state);
 }
 
-void Hands::release_all(Model& model, State& state) {
+void Hands::release_all(const Model& model, Controls& controls, State& state) {
   hands_ = {};
-  apply(model, state);
+  apply(model, controls, state);
 }
 
-void Hands::hold(Model& model, State& state, double stable_step) {
+void Hands::hold(const Model& model, Controls& controls, State& state, double stable_step) {
   stable_step_ = stable_step;
-  apply(model, state);
+  apply(model, controls, state);
 }
 
-// Writes the tethers of the model. What that changes in their energy is work of the hands.
-void Hands::apply(Model& model, State& state) const {
-  const double before = tether_energy(model, state.position);
-  model.tethers.clear();
+// Writes the grabs. What that changes in their energy is work of the hands.
+void Hands::apply(const Model& model, Controls& controls, State& state) const {
+  const double before = GrabTerm::energy({model, controls, state.position, state.time});
+  controls.grabs.clear();
   for (const Hand& h : hands_) {
     if (h.nodes.empty()) continue;
     const Body& body = body_of(model, h.nodes.front());
     const double all = std::max(stiffness_of_disc * mean_young(model, body) * h.radius,
-                                weight_per_length(model, body));
-    Tether tether{h.nodes, {}, h.offset, h.target};
+                                weight_per_length(model, controls.gravity, body));
+    sinew::Grab grab{h.nodes, {}, h.offset, h.target};
     for (std::size_t i = 0; i < h.nodes.size(); ++i) {
       const double omega = 2.0 / stable_step_;
       const double most = stable_hand_share * model.mass[uz(h.nodes[i])] * omega * omega;
       const double k = all * h.share[i];
-      tether.stiffness.push_back(stable_step_ < no_limit ? std::min(k, most) : k);
+      grab.stiffness.push_back(stable_step_ < no_limit ? std::min(k, most) : k);
     }
-    model.tethers.push_back(std::move(tether));
+    controls.grabs.push_back(std::move(grab));
   }
-  state.energy.work_in += tether_energy(model, state.position) - before;
+  state.energy.work_in += GrabTerm::energy({model, controls, state.position, state.time}) - before;
 }
 
-std::vector<HandStatus> Hands::status(const Model& model, const State& state) const {
+std::vector<HandStatus> Hands::status(const Model& model, const Controls& controls,
+                                      const State& state) const {
   std::vector<HandStatus> out;
   std::size_t next = 0;
   for (int i = 0; i < most_hands; ++i) {
     const Hand& h = hands_[uz(i)];
     if (h.nodes.empty()) continue;
-    const Tether& tether = model.tethers[next++];
+    const sinew::Grab& grab = controls.grabs[next++];
     HandStatus s;
     s.hand = i;
     s.target = h.point;
@@ -138,7 +140,7 @@ std::vector<HandStatus> Hands::status(const Model& model, const State& state) co
     for (std::size_t k = 0; k < h.nodes.size(); ++k) {
       s.at += h.share[k] * (state.position[uz(h.nodes[k])] - h.offset[k]);
     }
-    s.force = tether_pull(model, tether, state.position);
+    s.force = grab_pull(model, grab, state.position);
     out.push_back(s);
   }
   return out;

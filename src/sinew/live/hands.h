@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "sinew/live/frame.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
 namespace sinew::live {
@@ -16,20 +17,23 @@ namespace sinew::live {
 class Hands {
  public:
   // `node` of the model; `radius` [m]. What a hand held before it lets go.
-  void grab(Model& model, State& state, int hand, Index node, const Vec3& point, double radius);
+  void grab(const Model& model, Controls& controls, State& state, int hand, Index node,
+            const Vec3& point, double radius);
   // `size` of the whole body [m]: of this a hand moves a twentieth at once, and as much again with
   // every follow(), which is called between frames. A pointer that jumps tears nothing.
-  void drag(Model& model, State& state, int hand, const Vec3& point, double size);
-  void follow(Model& model, State& state, double size);
-  void release(Model& model, State& state, int hand);
-  void release_all(Model& model, State& state);
+  void drag(const Model& model, Controls& controls, State& state, int hand, const Vec3& point,
+            double size);
+  void follow(const Model& model, Controls& controls, State& state, double size);
+  void release(const Model& model, Controls& controls, State& state, int hand);
+  void release_all(const Model& model, Controls& controls, State& state);
 
-  // Puts the hands into a model with the same nodes that has taken the place of the one before, or
+  // Lets the hands hold a model with the same nodes that has taken the place of the one before, or
   // whose steps have changed. stable_step: what an explicit step may be [s], infinity: any. No node
   // becomes so stiff that it shortens.
-  void hold(Model& model, State& state, double stable_step);
+  void hold(const Model& model, Controls& controls, State& state, double stable_step);
 
-  std::vector<HandStatus> status(const Model& model, const State& state) const;
+  std::vector<HandStatus> status(const Model& model, const Controls& controls,
+                                 const State& state) const;
   bool any() const;
 
  private:
@@ -42,7 +46,7 @@ class Hands {
     Vec3 target = Vec3::Zero();  // where it pulls from [m]
   };
   static void approach(Hand& hand, double size);
-  void apply(Model& model, State& state) const;
+  void apply(const Model& model, Controls& controls, State& state) const;
 
   std::array<Hand, most_hands> hands_;
   double stable_step_ = no_limit;

@@ -116,7 +116,8 @@ void Simulation::act(const SetSprings& c) {
 }
 
 void Simulation::act(const SaveState& c) {
-  measure_energies(*model_, run_.state, stepping_->workspace());  // fills what the file holds
+  measure_energies(*model_, controls_, run_.state,
+                   stepping_->workspace());  // fills what the file holds
   c.done(format_frame(*model_, run_, stepping_->workspace(), io::VtuEncoding::zlib));
 }
 
@@ -166,8 +167,7 @@ void Simulation::act(const SetGravity& c) {
   // The forces take it from the model in every step: nothing has to be built for it.
   scene_ = with(scene_,
                 {fmt::format("gravity=[{},{},{}]", c.gravity.x(), c.gravity.y(), c.gravity.z())});
-  stepped_.gravity = c.gravity;
-  model_->gravity = c.gravity;
+  controls_.gravity = c.gravity;
   remember_parameters();
 }
 
@@ -201,19 +201,19 @@ void Simulation::act(const Grab& c) {
   }
   const double usual = std::max(1.7 * static_cast<double>(topology_->edge),
                                 0.04 * static_cast<double>(topology_->diagonal));
-  hands_.grab(*model_, run_.state, c.hand, topology_->node[uz(c.node)], c.point,
+  hands_.grab(*model_, controls_, run_.state, c.hand, topology_->node[uz(c.node)], c.point,
               c.radius > 0.0 ? c.radius : usual);
 }
 
 void Simulation::act(const Drag& c) {
   require_hand(c.hand);
   require_point(c.point);
-  hands_.drag(*model_, run_.state, c.hand, c.point, size());
+  hands_.drag(*model_, controls_, run_.state, c.hand, c.point, size());
 }
 
 void Simulation::act(const Release& c) {
   require_hand(c.hand);
-  hands_.release(*model_, run_.state, c.hand);
+  hands_.release(*model_, controls_, run_.state, c.hand);
 }
 
 void Simulation::act(const MoveBall& c) {

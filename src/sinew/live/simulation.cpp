@@ -3,20 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <chrono>
-#include <cmath>
 #include <utility>
 
 #include "sinew/base/error.h"
 #include "sinew/contact/find.h"
 #include "sinew/forces/springs.h"
-#include "sinew/live/carry_over.h"
 #include "sinew/live/look.h"
 #include "sinew/run/recorder.h"
 #include "sinew/run/summary.h"
 #include "sinew/scene/build.h"
-#include "sinew/scene/document.h"
+#include "sinew/sim/carry_over.h"
+#include "sinew/sim/choose_stepper.h"
 #include "sinew/sim/obstacle_reading.h"
 
 namespace sinew::live {
@@ -40,56 +38,11 @@ Parameters::Rigid rigid_of(const Model& model, const Obstacle& o, const std::str
   return out;
 }
 
-// No run of the live view comes to an end by itself [s].
-constexpr double for_ever = 1e9;
 // How much is measured before the speed is said anew [s] of wall time.
 constexpr double speed_window = 0.5;
 
-double interval_of(const Scene& scene) {
-  const double frame = 1.0 / scene.output.fps;
-  return scene.dt ? std::max(frame, *scene.dt / scene.substeps) : frame;
-}
-
-// How close implicit steps come to equilibrium where the view chooses them;
-// docs/methods/implicit.md tells what that costs.
-constexpr double live_tolerance = 0.03;
-// What a step of backward Euler to that tolerance costs in explicit ones of single precision: 12 to
-// 17 on the liver of 36k tets, more where the material is stiff.
-constexpr double steps_of_implicit = 25.0;
-// Wall time over simulated time from which on explicit steps are too slow: as a body deforms they
-// become shorter, and looks at the stable step come on top of what a trial step takes.
-constexpr double most_load = 0.6;
-
 // Explicit steps that have made less than this share of real time have fallen behind [-].
 constexpr double slow_pace = 0.7;
-
-bool leaves_the_choice(const Scene& scene) {
-  const DocValue root = parse_document(scene.document, scene.file);
-  return std::none_of(keys_of_steps.begin(), keys_of_steps.end(),
-                      [&](std::string_view key) { return root.find(key) != nullptr; });
-}
-
-// Restitution, contacts, and limits after every step, are better known to explicit steps.
-bool knows_implicit(const Model& model) {
-  return !model.ground && !ContactFinder::anything_to_find(model) && model.limited.empty() &&
-         !model.has_volume_limit;
-}
-
-// Of two trial steps the faster one [s].
-double wall_of_a_step(Stepping& stepping, RunState run) {
-  static const std::atomic<bool> after_one_step{true};
-  double least = no_limit;
-  for (int i = 0; i < 3; ++i) {
-    const Clock::time_point start = Clock::now();
-    try {
-      stepping.advance_frame(run, &after_one_step);
-    } catch (const Error&) {
-      return no_limit;
-    }
-    least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count());
-  }
-  return least;
-}
 
 }  // namespace
 
@@ -109,69 +62,52 @@ void Simulation::report(const Error& error) {
 }
 
 void Simulation::let_go() {
-  hands_.release_all(*model_, run_.state);
+  hands_.release_all(*model_, controls_, run_.state);
   ball_.remove(*model_, run_.state);
 }
 
-// A scene that says nothing about its steps takes explicit ones, and those of backward Euler where
-// explicit ones cannot keep pace with the clock and these are less work. Compared bodies take the
-// same.
-std::unique_ptr<Stepping> Simulation::choose_steps(Scene& stepped, const Model& model,
-                                                   RunState& run) const {
-  const auto implicit = [&](std::string reason) {
-    stepped.stepper = "implicit";
-    stepped.scheme = "backward-euler";
-    stepped.tolerance = live_tolerance;
-    RunState anew;
-    anew.state = run.state;
-    anew.frame = run.frame;
-    run = std::move(anew);
-    auto stepping = std::make_unique<Stepping>(stepped, model, run);
-    run.stepper_reason = std::move(reason);
-    return stepping;
-  };
-  const bool free = leaves_the_choice(stepped) && knows_implicit(model);
-  if (free && leader_ != nullptr && leader_->run_.stepper == "implicit") return implicit("");
-  auto stepping = std::make_unique<Stepping>(stepped, model, run);
-  if (!free || leader_ != nullptr) return stepping;
-  if (fell_behind_) return implicit("explicit steps fell behind the clock");
-  const double steps = 1.0 / (frames_per_second * run.target_step);
-  if (steps < steps_of_implicit) return stepping;
-  const double wall = steps * wall_of_a_step(*stepping, run);
-  if (wall * frames_per_second < most_load) return stepping;
-  return implicit(fmt::format("explicit steps, {:.0f} a frame, would take {:.1f} times real time",
-                              steps, wall * frames_per_second));
+// Frames of the view's own length, for ever. A scene that names no steps takes those that keep up
+// with the clock, and a compared body the same as the first.
+SteppingOptions Simulation::options_for(const Scene& scene) const {
+  SteppingOptions o = stepping_options(scene);
+  o.duration = no_limit;
+  o.interval = 1.0 / frames_per_second;
+  o.budget.reset();
+  if (o.stepper == StepperKind::rest) o.stepper = StepperKind::implicit;
+  if (scene.names_steps) return o;
+  if (leader_ == nullptr) {
+    o.pace = fell_behind_ ? Pace::missed : Pace::wanted;
+  } else if (leader_->run_.stepper == StepperKind::implicit) {
+    o.pace = Pace::missed;
+  }
+  return o;
 }
 
 // Makes everything anew before anything of it is put in place: a scene that cannot be built leaves
 // the one before as it is.
 void Simulation::rebuild(const Scene& scene, const State* keep) {
-  Scene stepped = scene;
-  stepped.duration = for_ever;
-  stepped.output.fps = frames_per_second;
-  stepped.budget_ms.reset();
-  if (stepped.stepper == "static") stepped.stepper = "implicit";
-  auto model = std::make_unique<Model>(build_model(stepped));
+  auto model = std::make_unique<Model>(build_model(scene));
+  Controls controls = initial_controls(*model);  // the hands take hold below
   RunState run;
   run.state = initial_state(*model);
-  if (keep != nullptr && keep->position.size() == run.state.position.size()) {
+  const bool goes_on = keep != nullptr && keep->position.size() == run.state.position.size();
+  if (goes_on) {
     run.state = *keep;
     run.state.reactions = {};
     calm_softened_bodies(*model_, *model, run.state);
-    run.frame = static_cast<std::int64_t>(std::floor(keep->time / interval_of(stepped) + 1e-9));
   }
-  auto stepping = choose_steps(stepped, *model, run);
+  auto stepping = std::make_unique<Stepping>(options_for(scene), *model, controls, run);
+  if (goes_on) stepping->resume_at(run);
   scene_ = scene;
-  stepped_ = std::move(stepped);
   stepping_ = std::move(stepping);  // before the model that it refers to goes
   finder_.reset();                  // it knows the old one
   model_ = std::move(model);
+  controls_ = std::move(controls);
   if (ContactFinder::anything_to_find(*model_)) finder_ = std::make_unique<ContactFinder>(*model_);
   run_ = std::move(run);
   good_ = run_.state;
-  const double stable = run_.stable_step > 0.0 ? run_.stable_step : no_limit;
-  hands_.hold(*model_, run_.state, stable);
-  ball_.hold(*model_, run_.state, stable);
+  hands_.hold(*model_, controls_, run_.state, run_.memory.stable_step);
+  ball_.hold(*model_, run_.state, run_.memory.stable_step);
   ahead_ = false;
   speed_ = last_speed_ = {};
   remember_parameters();
@@ -187,7 +123,7 @@ void Simulation::remember_parameters() {
     for (const SceneRegion& r : body.regions) p->parts.push_back({body.name, r.name, r.material});
   }
   p->gravity = scene_.gravity;
-  p->stepper = leaves_the_choice(scene_) ? "live" : scene_.stepper;
+  p->stepper = scene_.names_steps ? word_of(scene_.stepper) : std::string_view("live");
   p->dt = scene_.dt.value_or(0.0);
   if (scene_.ground) {
     p->has_ground = true;
@@ -222,18 +158,18 @@ bool Simulation::advance(Clock::time_point deadline, const std::atomic<bool>* hu
   if (!ahead_) ahead_ = steps(deadline, hurry, false);
   if (!ahead_ || !catch_up(deadline, hurry)) return false;
   ahead_ = false;
-  hands_.follow(*model_, run_.state, size());
-  ball_.follow(*model_, run_.state, interval_of(stepped_));
+  hands_.follow(*model_, controls_, run_.state, size());
+  ball_.follow(*model_, run_.state, stepping_->frame_interval());
   keep_pace();
   return true;
 }
 
 // Explicit steps that were fast enough for the body at rest may not be for one that is stretched.
 void Simulation::keep_pace() {
-  if (fell_behind_ || leader_ != nullptr || run_.stepper != "verlet") return;
+  if (fell_behind_ || leader_ != nullptr || run_.stepper != StepperKind::verlet) return;
   const Speed& v = last_speed_;
   if (v.wall < speed_window || v.simulated > slow_pace * v.wall) return;
-  if (!leaves_the_choice(scene_) || !knows_implicit(*model_)) return;
+  if (scene_.names_steps || !suits_implicit(*model_)) return;
   fell_behind_ = true;
   rebuild(scene_, &run_.state);
   if (other_) other_->rebuild(other_->scene_, &other_->run_.state);
@@ -243,9 +179,6 @@ bool Simulation::steps(Clock::time_point deadline, const std::atomic<bool>* hurr
   const auto may_go_on = [&] {
     return !only_one && Clock::now() < deadline && (hurry == nullptr || !hurry->load());
   };
-  // A set stop flag makes advance_frame() return after every step: the clock and the commands are
-  // looked at in between, however many steps a frame takes.
-  static const std::atomic<bool> after_one_step{true};
   const Clock::time_point start = Clock::now();
   const double time = run_.state.time;
   const std::int64_t step = run_.state.step;
@@ -254,19 +187,18 @@ bool Simulation::steps(Clock::time_point deadline, const std::atomic<bool>* hurr
   bool finished = false;
   try {
     do {
-      finished = stepping_->advance_frame(run_, &after_one_step);
+      finished = stepping_->step(controls_, run_);
     } while (!finished && may_go_on());
   } catch (const Error& e) {
     running_ = false;
     report(e);
     run_.state = good_;
-    run_.steps_left = 0;
-    run_.frame = static_cast<std::int64_t>(std::floor(good_.time / interval_of(stepped_) + 1e-9));
+    stepping_->resume_at(run_);
     let_go();
     return true;
   }
   if (finished) good_ = run_.state;
-  speed_.wall += std::chrono::duration<double>(Clock::now() - start).count();
+  speed_.wall += seconds_since(start);
   speed_.simulated += run_.state.time - time;
   speed_.steps += run_.state.step - step;
   speed_.newton += run_.newton_steps - newton;
@@ -285,7 +217,7 @@ std::string Simulation::limiting() const {
   if (other_ && capacity() < 0.7 * last_speed_.simulated / last_speed_.wall) {
     return "two bodies are stepped, and the one with the other law takes most of the time";
   }
-  if (run_.stepper == "implicit") {
+  if (run_.stepper == StepperKind::implicit) {
     return fmt::format("each implicit step takes {:.1f} Newton steps",
                        static_cast<double>(last_speed_.newton) /
                            static_cast<double>(std::max<std::int64_t>(1, last_speed_.steps)));
@@ -293,7 +225,7 @@ std::string Simulation::limiting() const {
   return fmt::format(
       "stiffness: the stable step is {:.3g} ms, {:.0f} steps a frame; "
       "a softer material, a coarser mesh or implicit steps are faster",
-      1e3 * run_.stable_step, 1.0 / (frames_per_second * run_.step));
+      1e3 * run_.memory.stable_step, 1.0 / (frames_per_second * run_.step));
 }
 
 Status Simulation::status() {
@@ -304,7 +236,7 @@ Status Simulation::status() {
   s.time = run_.state.time;
   s.step = run_.state.step;
   s.dt = run_.step > 0.0 ? run_.step : run_.target_step;
-  s.stable_step = run_.stable_step;
+  s.stable_step = run_.memory.stable_step;
   s.stepper = run_.stepper;
   s.reason = run_.stepper_reason;
   s.time_scale = time_scale_;
@@ -319,7 +251,7 @@ Status Simulation::status() {
         static_cast<double>(v.products) / static_cast<double>(std::max<std::int64_t>(1, v.newton));
   }
   s.limit = limiting();
-  s.energy = measure_energies(*model_, run_.state, stepping_->workspace());
+  s.energy = measure_energies(*model_, controls_, run_.state, stepping_->workspace());
   double rest = 0.0;
   double volume = 0.0;
   for (const Body& body : model_->bodies) {
@@ -330,10 +262,9 @@ Status Simulation::status() {
   const StretchRange range = measure_stretch(*model_, run_.state.position);
   s.max_stretch = range.stretch;
   s.max_compress = range.compress;
-  s.contacts = run_.contacts;
-  s.deepest = run_.deepest;
+  s.counters = run_;
   s.inverted_tets = count_inverted(*model_, run_.state.position);
-  s.hands = hands_.status(*model_, run_.state);
+  s.hands = hands_.status(*model_, controls_, run_.state);
   for (const ProbeReading& p : read_probes(*model_, run_.state.position)) {
     s.probes.push_back(p.displacement);
   }

@@ -2,12 +2,11 @@
 // its own speed. docs/view.md. Runner (runner.h) gives it a thread.
 #pragma once
 
-#include <array>
 #include <atomic>
 #include <chrono>
 #include <memory>
-#include <string_view>
 
+#include "sinew/contact/find.h"
 #include "sinew/live/ball.h"
 #include "sinew/live/command.h"
 #include "sinew/live/frame.h"
@@ -15,10 +14,6 @@
 #include "sinew/sim/stepping.h"
 
 namespace sinew::live {
-
-// What a scene says of its steps. Where it names none of these, the view chooses.
-inline constexpr std::array<std::string_view, 7> keys_of_steps = {
-    "stepper", "scheme", "dt", "substeps", "precision", "tolerance", "safety"};
 
 // Frames that are shown per simulated second.
 inline constexpr double frames_per_second = 60.0;
@@ -85,7 +80,7 @@ class Simulation {
 
   void change(const std::vector<std::string>& overrides);
   void rebuild(const Scene& scene, const State* keep);
-  std::unique_ptr<Stepping> choose_steps(Scene& stepped, const Model& model, RunState& run) const;
+  SteppingOptions options_for(const Scene& scene) const;
   void remember_parameters();
   void show(const Cut& cut, bool springs);
   void let_go();
@@ -98,9 +93,9 @@ class Simulation {
   double capacity() const;
   std::string limiting() const;
 
-  Scene scene_;    // as its document says it
-  Scene stepped_;  // the same, as it is stepped here
+  Scene scene_;
   std::unique_ptr<Model> model_;
+  Controls controls_;
   std::unique_ptr<ContactFinder> finder_;  // of what frames mark; null: nothing but the ground can
   std::unique_ptr<Stepping> stepping_;
   RunState run_;

@@ -67,7 +67,7 @@ std::uint64_t Model::hash() const {
   h.array(colour_start);
   h.value(limit_sweeps);
   h.value(limit_tolerance);
-  hash_vec(h, gravity);
+  hash_vec(h, start_gravity);
   h.value(ground.has_value());
   if (ground) {
     hash_vec(h, ground->point);
@@ -124,12 +124,6 @@ std::uint64_t Model::hash() const {
     for (const Index node : tie.node) h.value(node);
     for (const double weight : tie.weight) h.value(weight);
     h.value(tie.stiffness);
-  }
-  for (const Tether& t : tethers) {
-    h.array(t.nodes);
-    h.array(t.stiffness);
-    h.array(t.offset);
-    hash_vec(h, t.target);
   }
   return h.digest();
 }

@@ -73,15 +73,6 @@ struct Tie {
   double stiffness = 0.0;  // [N/m] > 0
 };
 
-// Springs of rest length zero from nodes to points that are moved from outside during a run
-// (forces/tethers.h). No scene has them: the hands of the live view are made of them.
-struct Tether {
-  std::vector<Index> nodes;
-  std::vector<double> stiffness;  // [N/m] (nodes)
-  std::vector<Vec3> offset;       // of each node's target from `target` [m] (nodes)
-  Vec3 target = Vec3::Zero();     // [m]
-};
-
 // The surface of the bodies, body by body: what hard obstacles touch.
 struct Skin {
   std::vector<Index> nodes;         // node ids, rising
@@ -100,6 +91,8 @@ struct Probe {
 };
 
 struct Model {
+  int version = 0;  // one more after every change of topology (model/topology_change.h)
+
   // --- nodes: those of the bodies, body by body, then the anchors ---
   std::vector<Vec3> rest_position;   // X [m] (nodes), where the body is placed
   std::vector<double> mass;          // m [kg] (nodes), lumped: a quarter of each tet's; anchors 0
@@ -168,7 +161,7 @@ struct Model {
   int limit_sweeps = 0;             // most sweeps over the limited springs after a step
   double limit_tolerance = 1e-3;    // violation, as a share of l0, that is good enough
 
-  Vec3 gravity = Vec3(0.0, -9.81, 0.0);  // [m/s2]
+  Vec3 start_gravity = Vec3(0.0, -9.81, 0.0);  // [m/s2], what Controls start with
   std::optional<Ground> ground;
   std::optional<Touch> touch;
   std::vector<Body> bodies;
@@ -177,8 +170,6 @@ struct Model {
   std::vector<Tie> ties;
   std::vector<Probe> probes;
   std::vector<Obstacle> obstacles;
-  std::vector<Tether> tethers;        // the one thing that may change during a run, beside gravity:
-                                      // between steps, by who owns the Model
   std::vector<double> surface_share;  // a third of the rest area of its surface triangles [m2]
                                       // (nodes of bodies); empty where there are no soft obstacles
   Skin skin;                          // empty where there are no hard obstacles

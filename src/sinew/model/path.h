@@ -27,7 +27,7 @@ struct Path {
   // R(turn) at time t.
   Mat3 rotation(double t) const;
 
- private:
+  // Translation, rotation and deformation at time t; its own `time` says nothing.
   KeyFrame frame(double t) const;
 };
 

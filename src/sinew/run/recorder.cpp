@@ -76,11 +76,6 @@ void add_row(std::ofstream& table, const fs::path& file, const std::string& row)
   }
 }
 
-io::VtuEncoding encoding_of(const std::string& name) {
-  if (name == "ascii") return io::VtuEncoding::ascii;
-  return name == "base64" ? io::VtuEncoding::base64 : io::VtuEncoding::zlib;
-}
-
 }  // namespace
 
 std::vector<double> node_stretch(const Model& model, const std::vector<Vec3>& x) {
@@ -104,7 +99,7 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
       scene_(scene.name),
       folder_(std::move(folder)),
       vtu_(scene.output.vtu),
-      encoding_(encoding_of(scene.output.encoding)),
+      encoding_(scene.output.encoding),
       cells_(vtu_ ? io::format_vtu_cells(model.tets, {}, encoding_) : std::string()) {
   const std::size_t rows = run.frame_times.size();
   probes_ = open_table(folder_ / "probes.csv", probe_header(model), rows);
@@ -112,8 +107,9 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
   frames_ = open_table(folder_ / "frames.csv", frames_header, rows);
 }
 
-void Recorder::record(RunState& run, Workspace& workspace) {
-  const Energies e = measure_energies(model_, run.state, workspace);  // also fills the forces
+void Recorder::record(const Controls& controls, RunState& run, Workspace& workspace) {
+  const Energies e =
+      measure_energies(model_, controls, run.state, workspace);  // also fills the forces
   run.frame_times.push_back(run.state.time);
   if (vtu_) {
     io::write_file(folder_ / frame_file(scene_, run.frame_times.size() - 1),
@@ -147,10 +143,10 @@ void Recorder::record(RunState& run, Workspace& workspace) {
                       e.elastic, e.gravity, e.contact, e.dissipated, e.work_in, e.total(),
                       volume / rest, range.stretch, range.compress, run.contacts));
   const FrameWork& w = run.work;
-  add_row(
-      frames_, folder_ / "frames.csv",
-      fmt::format("{},{},{:.4f},{},{},{},{:.4g},{}", run.frame, run.state.time, 1e3 * w.seconds,
-                  w.steps, w.newton_steps, w.products, w.residual, w.cut_short > 0 ? "yes" : "no"));
+  add_row(frames_, folder_ / "frames.csv",
+          fmt::format("{},{},{:.4f},{},{},{},{:.4g},{}", run.frame, run.state.time, 1e3 * w.seconds,
+                      w.steps, w.newton_steps, w.products, w.residual,
+                      w.steps_cut_short > 0 ? "yes" : "no"));
 }
 
 std::string format_frame(const Model& model, const RunState& run, const Workspace& workspace,

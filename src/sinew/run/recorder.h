@@ -8,8 +8,9 @@
 
 #include "sinew/forces/workspace.h"
 #include "sinew/io/vtu.h"
+#include "sinew/model/controls.h"
 #include "sinew/scene/scene.h"
-#include "sinew/sim/stepping.h"
+#include "sinew/sim/run_state.h"
 
 namespace sinew {
 
@@ -21,7 +22,7 @@ class Recorder {
            const RunState& run);
 
   // Writes the frame that the state now stands at and appends its time to run.frame_times.
-  void record(RunState& run, Workspace& workspace);
+  void record(const Controls& controls, RunState& run, Workspace& workspace);
 
  private:
   void write_collection(const RunState& run) const;

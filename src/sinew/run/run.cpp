@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/base/clock.h"
 #include "sinew/base/hash.h"
 #include "sinew/forces/righting.h"
 #include "sinew/forces/springs.h"
@@ -14,6 +15,7 @@
 #include "sinew/run/recorder.h"
 #include "sinew/scene/build.h"
 #include "sinew/sim/checkpoint.h"
+#include "sinew/sim/stepping.h"
 
 namespace sinew {
 namespace {
@@ -56,6 +58,7 @@ class Runner {
          std::vector<std::string> warnings, const RunOptions& options)
       : scene_(scene),
         model_(model),
+        controls_(initial_controls(model)),
         meshes_(std::move(meshes)),
         warnings_(std::move(warnings)),
         options_(options) {}
@@ -64,7 +67,7 @@ class Runner {
     const Clock::time_point start = Clock::now();
     const double wall_before = run.wall_seconds;
     const double sim_before = run.state.time;
-    Stepping stepping(scene_, model_, run);
+    Stepping stepping(scene_, model_, controls_, run);
     if (options_.on_stepper && !run.stepper_reason.empty()) {
       options_.on_stepper(run.stepper, run.stepper_reason);
     }
@@ -74,7 +77,8 @@ class Runner {
       recorder.emplace(scene_, model_, options_.out, run);
     }
     if (run.frame_times.empty()) {
-      run.start_energy = measure_energies(model_, run.state, stepping.workspace()).total();
+      run.start_energy =
+          measure_energies(model_, controls_, run.state, stepping.workspace()).total();
       record(recorder, run, stepping.workspace());
       save(run);
     }
@@ -84,7 +88,7 @@ class Runner {
     Clock::time_point saved = Clock::now();
     try {
       while (run.frame < stepping.frame_count()) {
-        const bool finished = stepping.advance_frame(run, options_.stop);
+        const bool finished = stepping.advance_frame(controls_, run, options_.stop);
         run.wall_seconds = wall_before + seconds_since(start);
         if (finished) {
           record(recorder, run, stepping.workspace());
@@ -125,7 +129,7 @@ class Runner {
     run.peak_inverted_tets =
         std::max(run.peak_inverted_tets, count_inverted(model_, run.state.position));
     if (recorder) {
-      recorder->record(run, workspace);
+      recorder->record(controls_, run, workspace);
     } else {
       run.frame_times.push_back(run.state.time);
     }
@@ -140,10 +144,8 @@ class Runner {
   }
 
   Summary finish_summary(RunState& run, Workspace& workspace, RunStatus status) const {
-    Summary s = summarize(scene_, model_, meshes_, run, workspace);
-    s.status = status == RunStatus::finished      ? "finished"
-               : status == RunStatus::interrupted ? "interrupted"
-                                                  : "diverged";
+    Summary s = summarize(scene_, model_, controls_, meshes_, run, workspace);
+    s.status = status;
     s.warnings = warnings_;
     if (scene_.dt && run.step_reductions > 0) {
       s.warnings.push_back(
@@ -152,13 +154,14 @@ class Runner {
                       *scene_.dt / scene_.substeps, run.smallest_stable_step, run.step_reductions));
     }
     if (run.unmet_limits > 0) {
-      const char* remedy = scene_.stepper == "verlet" ? "more limit_sweeps" : "a smaller dt";
+      const char* remedy =
+          scene_.stepper == StepperKind::verlet ? "more limit_sweeps" : "a smaller dt";
       s.warnings.push_back(
           fmt::format("{} of {} steps ended with a limit violated; {}, or a larger "
                       "limit_tolerance, or limits that the pins leave room for",
                       run.unmet_limits, run.state.step, remedy));
     }
-    if (model_.bounces() && scene_.stepper == "implicit") {
+    if (model_.bounces() && scene_.stepper == StepperKind::implicit) {
       s.warnings.push_back("implicit steps know no restitution: every impact is plastic");
     }
     if (run.righting_steps > 0) {
@@ -176,6 +179,7 @@ class Runner {
 
   const Scene& scene_;
   const Model& model_;
+  const Controls controls_;
   std::vector<std::string> meshes_;
   std::vector<std::string> warnings_;
   const RunOptions& options_;

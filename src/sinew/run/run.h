@@ -29,12 +29,10 @@ struct RunOptions {
   const std::atomic<bool>* stop = nullptr;           // set it to end after the step under way
   std::function<void(const Progress&)> on_progress;  // called after every frame
   // stepper = "auto": called before the first step with RunState::stepper and its reason.
-  std::function<void(const std::string&, const std::string&)> on_stepper;
+  std::function<void(StepperKind, const std::string&)> on_stepper;
   // Called before the first step with what is wrong with the start; it is in the summary as well.
   std::function<void(const std::string&)> on_warning;
 };
-
-enum class RunStatus { finished, interrupted, diverged };
 
 struct RunResult {
   RunStatus status = RunStatus::finished;

@@ -10,6 +10,7 @@
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
 #include "sinew/sim/obstacle_reading.h"
+#include "sinew/solver/implicit.h"
 
 namespace sinew {
 namespace {
@@ -82,10 +83,11 @@ std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3
   return readings;
 }
 
-Summary summarize(const Scene& scene, const Model& model, const std::vector<std::string>& meshes,
-                  RunState& run, Workspace& workspace) {
+Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
+                  const std::vector<std::string>& meshes, RunState& run, Workspace& workspace) {
   const std::vector<Vec3>& x = run.state.position;
   Summary s;
+  static_cast<RunCounters&>(s) = run;
   s.scene = scene.name;
   s.title = scene.title;
   s.look_for = scene.look_for;
@@ -104,14 +106,14 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   }
   s.volume_ratio = volume / rest_volume;
   s.inverted_tets = count_inverted(model, x);
-  s.peak_inverted_tets = run.peak_inverted_tets;
   s.nodes = model.body_node_count();
   s.springs = model.spring_count();
   s.stepper = run.stepper;
   s.stepper_asked = scene.stepper;
-  const bool may_be_single = run.stepper == "verlet" ||
-                             (run.stepper == "implicit" && may_take_single(model, scene.tolerance));
-  s.precision = may_be_single ? scene.precision : "double";
+  const bool may_be_single =
+      run.stepper == StepperKind::verlet ||
+      (run.stepper == StepperKind::implicit && may_take_single(model, scene.tolerance));
+  s.precision = may_be_single ? scene.precision : Precision::double_;
   s.stepper_reason = run.stepper_reason;
   s.dt_auto = !scene.dt.has_value();
   s.dt = run.step > 0.0 ? run.step : run.target_step;
@@ -120,29 +122,14 @@ Summary summarize(const Scene& scene, const Model& model, const std::vector<std:
   s.frames = run.frame;
   s.sim_seconds = run.state.time;
   s.wall_seconds = run.wall_seconds;
-  s.energy = measure_energies(model, run.state, workspace);
+  s.energy = measure_energies(model, controls, run.state, workspace);
   s.energy_drift = s.energy.total() - run.start_energy;
   const StretchRange range = measure_stretch(model, x);
   s.max_stretch = range.stretch;
   s.max_compress = range.compress;
-  s.peak_stretch = run.peak_stretch;
-  s.peak_compress = run.peak_compress;
-  s.contacts = run.contacts;
-  s.deepest_penetration = run.deepest;
-  s.penetration = run.depth;
   for (const Overlap& o : find_overlaps(model, x)) s.overlap = std::max(s.overlap, o.depth);
-  s.friction_work = run.friction_work;
-  s.limit_sweeps = run.limit_sweeps;
-  s.unmet_limits = run.unmet_limits;
-  s.righting_steps = run.righting_steps;
   s.limit_violation = measure_limit_violation(model, x);
-  s.step_reductions = run.step_reductions;
-  s.step_increases = run.step_increases;
-  s.step_cuts = run.step_cuts;
   if (scene.budget_ms) s.budget = summarize_budget(*scene.budget_ms, run);
-  s.newton_steps = run.newton_steps;
-  s.products = run.products;
-  s.residual = run.residual;
   s.largest_cell_change = largest_cell_change(model, x);
   s.probes = read_probes(model, x);
   s.obstacles = read_obstacles(model, run.state, workspace);
@@ -175,65 +162,56 @@ nlohmann::ordered_json to_json(const Summary& s) {
                          {"depth", o.depth},
                          {"contacts", o.contacts}};
   }
-  return {{"version", SINEW_VERSION},
-          {"status", s.status},
-          {"scene", s.scene},
-          {"title", s.title},
-          {"scene_hash", s.scene_hash},
-          {"model_hash", s.model_hash},
-          {"mesh", {{"nodes", s.nodes}, {"tets", s.tets}, {"springs", s.springs}}},
-          {"bodies", bodies},
-          {"laws", laws},
-          {"stepper", s.stepper},
-          {"stepper_asked", s.stepper_asked},
-          {"precision", s.precision},
-          {"stepper_reason", s.stepper_reason},
-          {"dt", s.dt},
-          {"dt_auto", s.dt_auto},
-          {"stable_step", std::isfinite(s.stable_step) ? nlohmann::ordered_json(s.stable_step)
-                                                       : nlohmann::ordered_json()},
-          {"step_reductions", s.step_reductions},
-          {"step_increases", s.step_increases},
-          {"step_cuts", s.step_cuts},
-          {"reproducible", !s.budget},
-          {"budget", s.budget ? to_json(*s.budget) : nlohmann::ordered_json()},
-          {"static",
-           {{"newton_steps", s.newton_steps}, {"products", s.products}, {"residual", s.residual}}},
-          {"steps", s.steps},
-          {"frames", s.frames},
-          {"sim_seconds", s.sim_seconds},
-          {"wall_seconds", s.wall_seconds},
-          {"realtime_factor", s.realtime_factor()},
-          {"energy",
-           {{"kinetic", s.energy.kinetic},
-            {"elastic", s.energy.elastic},
-            {"gravity", s.energy.gravity},
-            {"contact", s.energy.contact},
-            {"dissipated", s.energy.dissipated},
-            {"work_in", s.energy.work_in},
-            {"drift", s.energy_drift}}},
-          {"volume_ratio", s.volume_ratio},
-          {"largest_cell_change", s.largest_cell_change},
-          {"inverted_tets", s.inverted_tets},
-          {"peak_inverted_tets", s.peak_inverted_tets},
-          {"righting_steps", s.righting_steps},
-          {"max_stretch", s.max_stretch},
-          {"max_compress", s.max_compress},
-          {"peak_stretch", s.peak_stretch},
-          {"peak_compress", s.peak_compress},
-          {"contacts", s.contacts},
-          {"deepest_penetration", s.deepest_penetration},
-          {"penetration", s.penetration},
-          {"overlap", s.overlap},
-          {"friction_work", s.friction_work},
-          {"limits",
-           {{"sweeps", s.limit_sweeps},
-            {"unmet_steps", s.unmet_limits},
-            {"violation", s.limit_violation}}},
-          {"state_hash", s.state_hash},
-          {"probes", probes},
-          {"obstacles", obstacles},
-          {"warnings", s.warnings}};
+  nlohmann::ordered_json json = {
+      {"version", SINEW_VERSION},
+      {"status", word_of(s.status)},
+      {"scene", s.scene},
+      {"title", s.title},
+      {"scene_hash", s.scene_hash},
+      {"model_hash", s.model_hash},
+      {"mesh", {{"nodes", s.nodes}, {"tets", s.tets}, {"springs", s.springs}}},
+      {"bodies", bodies},
+      {"laws", laws},
+      {"stepper", word_of(s.stepper)},
+      {"stepper_asked", word_of(s.stepper_asked)},
+      {"precision", word_of(s.precision)},
+      {"stepper_reason", s.stepper_reason},
+      {"dt", s.dt},
+      {"dt_auto", s.dt_auto},
+      {"stable_step", std::isfinite(s.stable_step) ? nlohmann::ordered_json(s.stable_step)
+                                                   : nlohmann::ordered_json()},
+      {"reproducible", !s.budget},
+      {"budget", s.budget ? to_json(*s.budget) : nlohmann::ordered_json()},
+      {"static", nlohmann::ordered_json::object()},
+      {"steps", s.steps},
+      {"frames", s.frames},
+      {"sim_seconds", s.sim_seconds},
+      {"wall_seconds", s.wall_seconds},
+      {"realtime_factor", s.realtime_factor()},
+      {"energy",
+       {{"kinetic", s.energy.kinetic},
+        {"elastic", s.energy.elastic},
+        {"gravity", s.energy.gravity},
+        {"contact", s.energy.contact},
+        {"dissipated", s.energy.dissipated},
+        {"work_in", s.energy.work_in},
+        {"drift", s.energy_drift}}},
+      {"volume_ratio", s.volume_ratio},
+      {"largest_cell_change", s.largest_cell_change},
+      {"inverted_tets", s.inverted_tets},
+      {"max_stretch", s.max_stretch},
+      {"max_compress", s.max_compress},
+      {"overlap", s.overlap},
+      {"limits", {{"violation", s.limit_violation}}},
+      {"state_hash", s.state_hash},
+      {"probes", probes},
+      {"obstacles", obstacles},
+      {"warnings", s.warnings}};
+  for_each_counter(s, [&](const CounterField& field, const auto& value) {
+    if (field.key.empty()) return;
+    json[nlohmann::ordered_json::json_pointer("/" + std::string(field.key))] = value;
+  });
+  return json;
 }
 
 }  // namespace sinew

@@ -1,6 +1,7 @@
 // What a run comes to, as summary.json and the table of the command line say it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -9,9 +10,17 @@
 
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/terms.h"
-#include "sinew/sim/stepping.h"
+#include "sinew/scene/scene.h"
+#include "sinew/sim/run_state.h"
 
 namespace sinew {
+
+enum class RunStatus { finished, interrupted, diverged };
+constexpr std::array<Word<RunStatus>, 3> words_of(RunStatus) {
+  return {{{RunStatus::finished, "finished"},
+           {RunStatus::interrupted, "interrupted"},
+           {RunStatus::diverged, "diverged"}}};
+}
 
 struct ProbeReading {
   std::string name;
@@ -38,16 +47,17 @@ struct BudgetSummary {
   double largest_residual = 0.0;                    // of the steps, see NewtonReport::residual
 };
 
-struct Summary {
-  std::string status;  // finished, interrupted, diverged
+// Beside these the counters of the run (sim/run_counters.h).
+struct Summary : RunCounters {
+  RunStatus status = RunStatus::finished;
   std::string scene, title, look_for;
   std::string scene_hash, model_hash, state_hash;
   std::vector<BodySummary> bodies;
   Index nodes = 0, tets = 0, springs = 0;
-  std::string stepper;         // the one that ran
-  std::string stepper_asked;   // of the scene
-  std::string precision;       // of the forces: single, double
-  std::string stepper_reason;  // of stepper = "auto"
+  StepperKind stepper = StepperKind::verlet;        // the one that ran
+  StepperKind stepper_asked = StepperKind::verlet;  // of the scene
+  Precision precision = Precision::single;          // of the forces
+  std::string stepper_reason;                       // of stepper = "auto"
   bool dt_auto = true;
   double dt = 0.0;           // the step last taken [s]
   double stable_step = 0.0;  // the smallest seen in the run [s]
@@ -56,25 +66,15 @@ struct Summary {
   double sim_seconds = 0.0;
   double wall_seconds = 0.0;
   Energies energy;
-  double energy_drift = 0.0;            // change of the account's total since the start [J]
-  double volume_ratio = 1.0;            // of all bodies together [-]
-  std::int64_t inverted_tets = 0;       // at the end
-  std::int64_t peak_inverted_tets = 0;  // the most in any frame
-  double max_stretch = 0.0, max_compress = 0.0;    // at the end, as a share of the rest length
-  double peak_stretch = 0.0, peak_compress = 0.0;  // the largest of all frames
-  std::int64_t contacts = 0;                       // places that touch at the end
-  double deepest_penetration = 0.0;                // of all steps [m]
-  double penetration = 0.0;                        // of the last one [m]
+  double energy_drift = 0.0;       // change of the account's total since the start [J]
+  double volume_ratio = 1.0;       // of all bodies together [-]
+  std::int64_t inverted_tets = 0;  // at the end
+  double max_stretch = 0.0, max_compress = 0.0;  // at the end, as a share of the rest length
   double overlap =
       0.0;  // depth of the deepest node of a body in the tets of another, at the end [m]
-  double friction_work = 0.0;  // turned to heat by contacts [J]
-  std::int64_t limit_sweeps = 0, unmet_limits = 0, righting_steps = 0;
   double limit_violation = 0.0;  // at the end, as a share of the rest length
-  std::int64_t step_reductions = 0, step_increases = 0, step_cuts = 0;  // see RunState
   std::optional<BudgetSummary> budget;
-  std::int64_t newton_steps = 0, products = 0;  // static
-  double residual = 0.0;                        // static: |f| over what the nodes carry
-  double largest_cell_change = 0.0;             // of a node cell's volume, at the end [-]
+  double largest_cell_change = 0.0;  // of a node cell's volume, at the end [-]
   std::vector<ProbeReading> probes;
   std::vector<ObstacleReading> obstacles;
   std::vector<std::string> warnings;
@@ -89,8 +89,8 @@ std::int64_t count_inverted(const Model& model, const std::vector<Vec3>& x);
 std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3>& x);
 
 // Measures the run as it stands. `meshes`: where each body's mesh came from.
-Summary summarize(const Scene& scene, const Model& model, const std::vector<std::string>& meshes,
-                  RunState& run, Workspace& workspace);
+Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
+                  const std::vector<std::string>& meshes, RunState& run, Workspace& workspace);
 
 // The object of summary.json: docs/output.md names its keys.
 nlohmann::ordered_json to_json(const Summary& summary);

@@ -270,7 +270,7 @@ class Parts {
     add_obstacle(model_, std::move(obstacle));
     if (!o.soft) return build_skin(model_);
     for (Index i = 0; i < model_.body_node_count(); ++i)
-      if (!std::isfinite(largest_obstacle_stiffness(model_, i)))
+      if (!std::isfinite(ObstacleTerm::most_stiffness(model_, i)))
         throw Error(ErrorKind::input,
                     fmt::format("[obstacle.{}] is too stiff to compute with", o.name),
                     "check its stiffness, and young and scale of the bodies; they are in SI units",
@@ -327,7 +327,7 @@ std::vector<std::string> overlap_warnings(const Model& model) {
 Model build_model(const Scene& scene, BuildReport* report) {
   Model model;
   const std::vector<PlacedBody> bodies = add_bodies(scene, model, report);
-  model.gravity = scene.gravity;
+  model.start_gravity = scene.gravity;
   model.limit_sweeps = scene.limit_sweeps;
   model.limit_tolerance = scene.limit_tolerance;
   if (const auto& g = scene.ground)

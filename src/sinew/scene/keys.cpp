@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "sinew/base/text.h"
+#include "sinew/model/material_words.h"
+#include "sinew/scene/scene.h"
 
 namespace sinew {
 
@@ -59,9 +61,9 @@ KeyTables make_tables() {
                  text("title"),
                  text("look_for"),
                  number("duration", "s", "2", positive),
-                 word("stepper", "\"verlet\"", "verlet implicit static auto"),
-                 word("scheme", "\"sdirk2\"", "sdirk2 backward-euler"),
-                 word("precision", "\"single\"", "single double"),
+                 word("stepper", "\"verlet\"", all_words<StepperKind>()),
+                 word("scheme", "\"sdirk2\"", all_words<Scheme>()),
+                 word("precision", "\"single\"", all_words<Precision>()),
                  number("tolerance", "", "1e-6", {1e-12, 0.1}),
                  number("budget_ms", "ms", "", positive),
                  {"dt", T::number_or_word, "s", "\"auto\"", positive, "auto"},
@@ -88,7 +90,7 @@ KeyTables make_tables() {
                 text("mesh"),
                 number("mesh_size", "m", "", positive),
                 point("fit", "", "", positive),
-                word("shape", "", "beam box sphere ellipsoid cylinder hollow_sphere"),
+                word("shape", "", all_words<BodyShape>()),
                 other("cells", T::cells, "", "[4, 4, 16]", from_to(1, 20'000'000)),
                 point("size", "m", "[0.1, 0.1, 0.4]", positive),
                 number("jitter", "", "0", from_to(0, 0.45)),
@@ -104,32 +106,31 @@ KeyTables make_tables() {
                 point("position", "m", "[0, 0, 0]"),
                 point("velocity", "m/s", "[0, 0, 0]"),
                 point("spin", "rad/s", "[0, 0, 0]"),
-                word("start", "\"rest\"", "rest flat inverted random"),
+                word("start", "\"rest\"", all_words<Start>()),
                 other("region", T::table),
             }};
-  t.material = {
-      "material",
-      "a material",
-      {
-          text("material"),
-          word("law", "\"neo-hookean\"", "neo-hookean calibrated uniform lloyd vangelder"),
-          number("density", "kg/m3", "1060", positive),
-          number("young", "Pa", "15e3", positive),
-          number("poisson", "", "0.45", {-1.0, 0.5, true, true}),
-          number("spring_stiffness", "N/m", "2e5", positive),
-          number("spring_damping", "N s/m", "3e3", not_negative),
-          word("length", "\"tet\"", "tet edge"),
-          word("damping", "\"ratio\"", "ratio published material"),
-          number("damping_ratio", "", "0.1", not_negative),
-          number("viscosity", "Pa s", "0", not_negative),
-          number("drag", "1/s", "0", not_negative),
-          number("stretch_limit", "", "inf", positive_or_none),
-          number("compress_limit", "", "inf", {0.0, 1.0, true, false, true}),
-          number("beta", "", "the law's choice", from_to(0, 1)),
-          word("volume", "the law's choice", "none tet node"),
-          number("volume_limit", "", "inf", positive_or_none),
-          number("volume_stiffness", "Pa", "the one of young and poisson", not_negative),
-      }};
+  t.material = {"material",
+                "a material",
+                {
+                    text("material"),
+                    word("law", "\"neo-hookean\"", all_words<Law>()),
+                    number("density", "kg/m3", "1060", positive),
+                    number("young", "Pa", "15e3", positive),
+                    number("poisson", "", "0.45", {-1.0, 0.5, true, true}),
+                    number("spring_stiffness", "N/m", "2e5", positive),
+                    number("spring_damping", "N s/m", "3e3", not_negative),
+                    word("length", "\"tet\"", all_words<LloydLength>()),
+                    word("damping", "\"ratio\"", all_words<Damping>()),
+                    number("damping_ratio", "", "0.1", not_negative),
+                    number("viscosity", "Pa s", "0", not_negative),
+                    number("drag", "1/s", "0", not_negative),
+                    number("stretch_limit", "", "inf", positive_or_none),
+                    number("compress_limit", "", "inf", {0.0, 1.0, true, false, true}),
+                    number("beta", "", "the law's choice", from_to(0, 1)),
+                    word("volume", "the law's choice", all_words<Volume>()),
+                    number("volume_limit", "", "inf", positive_or_none),
+                    number("volume_stiffness", "Pa", "the one of young and poisson", not_negative),
+                }};
   t.region = {"region",
               "[body.NAME.region.NAME]",
               {
@@ -247,7 +248,7 @@ KeyTables make_tables() {
               {
                   number("fps", "1/s", "30", {0.0, 1e6, true}),
                   boolean("vtu", "true"),
-                  word("encoding", "\"zlib\"", "zlib base64 ascii"),
+                  word("encoding", "\"zlib\"", all_words<io::VtuEncoding>()),
                   number("checkpoint", "s", "5", not_negative),
               }};
   return t;

@@ -70,13 +70,14 @@ void refuse_shared_columns(const Scene& scene, const Reader& root) {
 // A step cut off by its budget is stable because it still lowers the potential of backward Euler;
 // SDIRK2 builds its second part on a first one that has come to its end.
 void parse_budget(const Reader& root, Scene& scene) {
-  if (scene.stepper != "implicit" && scene.stepper != "auto")
-    root.fail("budget_ms", fmt::format("stepper = \"{}\" knows no budget_ms", scene.stepper),
+  if (scene.stepper != StepperKind::implicit && scene.stepper != StepperKind::automatic)
+    root.fail("budget_ms",
+              fmt::format("stepper = \"{}\" knows no budget_ms", word_of(scene.stepper)),
               "take stepper = \"implicit\", or leave budget_ms out");
-  if (root.word("scheme") == "sdirk2")
+  if (root.has("scheme") && scene.scheme == Scheme::sdirk2)
     root.fail("scheme", "scheme = \"sdirk2\" does not go with budget_ms",
               "leave scheme out: with a budget it is \"backward-euler\"");
-  scene.scheme = "backward-euler";
+  scene.scheme = Scheme::backward_euler;
 }
 
 Scene parse_root(const DocValue& document) {
@@ -87,13 +88,15 @@ Scene parse_root(const DocValue& document) {
   root.text("title", scene.title);
   root.text("look_for", scene.look_for);
   root.number("duration", scene.duration);
-  if (const auto stepper = root.word("stepper")) scene.stepper = *stepper;
-  if (const auto scheme = root.word("scheme")) scene.scheme = *scheme;
-  if (const auto precision = root.word("precision")) scene.precision = *precision;
+  root.word("stepper", scene.stepper);
+  root.word("scheme", scene.scheme);
+  root.word("precision", scene.precision);
   root.number("tolerance", scene.tolerance);
   if (root.number("budget_ms", scene.budget_ms)) parse_budget(root, scene);
   if (!root.word("dt")) root.number("dt", scene.dt);
   root.integer("substeps", scene.substeps);
+  scene.names_steps = std::any_of(keys_of_steps.begin(), keys_of_steps.end(),
+                                  [&](std::string_view key) { return root.has(key); });
   root.number("safety", scene.safety);
   root.boolean("allow_unstable", scene.allow_unstable);
   root.point("gravity", scene.gravity);

@@ -4,6 +4,7 @@
 #include <array>
 #include <map>
 
+#include "sinew/model/material_words.h"
 #include "sinew/scene/filled.h"
 #include "sinew/scene/parse.h"
 #include "sinew/scene/tissues.h"
@@ -30,12 +31,13 @@ constexpr std::array<ShapeKey, 8> shape_keys = {{
 
 // A key that would have no effect is a mistake.
 void refuse_shape_keys_that_do_not_fit(const Reader& reader, const SceneBody& body) {
+  const std::string_view shape = word_of(body.shape);
   const std::string source =
-      body.shape.empty() ? std::string("a mesh file") : fmt::format("shape = \"{}\"", body.shape);
+      shape.empty() ? std::string("a mesh file") : fmt::format("shape = \"{}\"", shape);
   for (const ShapeKey& k : shape_keys) {
     if (!reader.has(k.key)) continue;
     const std::vector<std::string> owners = split_words(k.shapes);
-    if (std::find(owners.begin(), owners.end(), body.shape) != owners.end()) continue;
+    if (std::find(owners.begin(), owners.end(), shape) != owners.end()) continue;
     std::string list;
     for (const std::string& owner : owners) list += (list.empty() ? "" : ", ") + owner;
     reader.fail(k.key, fmt::format("{} does not go with {}", reader.called(k.key), source),
@@ -45,14 +47,14 @@ void refuse_shape_keys_that_do_not_fit(const Reader& reader, const SceneBody& bo
 
 void parse_source(const Reader& reader, SceneBody& body) {
   reader.text("mesh", body.mesh);
-  if (const auto shape = reader.word("shape")) body.shape = *shape;
+  reader.word("shape", body.shape);
   if (reader.has("mesh") && reader.has("shape"))
     reader.fail("shape", fmt::format("{} has both a mesh and a shape", reader.name()),
                 "remove one of them");
   if (!reader.has("mesh") && !reader.has("shape"))
     throw Error(ErrorKind::input, fmt::format("{} has neither a mesh nor a shape", reader.name()),
                 "add mesh = \"file\" or shape = \"beam\"", reader.where());
-  if (body.shape.empty() && body.mesh.empty())
+  if (body.shape == BodyShape::file && body.mesh.empty())
     reader.fail("mesh", fmt::format("{} is empty; expected a file name", reader.called("mesh")),
                 "name a mesh file, relative to the scene's folder");
   body.mesh_where = reader.where(reader.has("mesh") ? "mesh" : "shape");
@@ -146,15 +148,9 @@ Eigen::Quaterniond parse_rotation(const Reader& reader) {
 Material parse_material(const Reader& reader, const Material& base) {
   Material m = base;
   parse_tissue(reader, m);
-  if (const auto law = reader.word("law"))
-    m.law = *law == "uniform"      ? Law::uniform
-            : *law == "lloyd"      ? Law::lloyd
-            : *law == "vangelder"  ? Law::vangelder
-            : *law == "calibrated" ? Law::calibrated
-                                   : Law::neo_hookean;
+  reader.word("law", m.law);
   reader.number("beta", m.beta);
-  if (const auto volume = reader.word("volume"))
-    m.volume = *volume == "none" ? Volume::none : *volume == "tet" ? Volume::tet : Volume::node;
+  reader.word("volume", m.volume);
   reader.number("volume_stiffness", m.volume_stiffness);
   reader.number("volume_limit", m.volume_limit);
   reader.number("density", m.density);
@@ -162,12 +158,8 @@ Material parse_material(const Reader& reader, const Material& base) {
   reader.number("poisson", m.poisson);
   reader.number("spring_stiffness", m.spring_stiffness);
   reader.number("spring_damping", m.spring_damping);
-  if (const auto length = reader.word("length"))
-    m.length = *length == "tet" ? LloydLength::tet : LloydLength::edge;
-  if (const auto damping = reader.word("damping"))
-    m.damping = *damping == "ratio"       ? Damping::ratio
-                : *damping == "published" ? Damping::published
-                                          : Damping::material;
+  reader.word("length", m.length);
+  reader.word("damping", m.damping);
   reader.number("damping_ratio", m.damping_ratio);
   reader.number("viscosity", m.viscosity);
   reader.number("drag", m.drag);
@@ -189,7 +181,7 @@ SceneBody parse_body(const std::string& name, const DocValue& value) {
   reader.point("position", body.position);
   reader.point("velocity", body.velocity);
   reader.point("spin", body.spin);
-  if (const auto start = reader.word("start")) body.start = *start;
+  reader.word("start", body.start);
   body.material = parse_material(reader, Material{});
   if (const DocValue* regions = reader.table("region"))
     for (const DocEntry& entry : regions->entries)

@@ -185,7 +185,7 @@ SceneOutput parse_output(const DocValue& value) {
   SceneOutput output;
   reader.number("fps", output.fps);
   reader.boolean("vtu", output.vtu);
-  if (const auto encoding = reader.word("encoding")) output.encoding = *encoding;
+  reader.word("encoding", output.encoding);
   reader.number("checkpoint", output.checkpoint);
   return output;
 }

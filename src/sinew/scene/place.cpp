@@ -47,6 +47,12 @@ fs::path shown(const fs::path& path) {
 }
 
 TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source) {
+  if (const auto given = scene.given.bodies.find(body.mesh); given != scene.given.bodies.end()) {
+    source = fmt::format("the arrays of [body.{}]", body.name);
+    TetMesh mesh = *given->second;
+    if (body.fit) fit_to(mesh.nodes, *body.fit, body.mesh_where);
+    return mesh;
+  }
   const fs::path path = fs::path(scene.base) / body.mesh;
   std::error_code failed;
   const fs::path tetgen = path.string() + ".node";  // TetGen's pair goes by its stem
@@ -63,17 +69,26 @@ TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source
 
 TetMesh make_shape(const SceneBody& body) {
   try {
-    if (body.shape == "beam") return beam(body.size, body.cells, body.jitter);
-    if (body.shape == "box") return box(body.size, body.cells, body.jitter);
-    if (body.shape == "sphere") return sphere(body.radius, body.resolution);
-    if (body.shape == "ellipsoid") return ellipsoid(body.radii, body.resolution);
-    if (body.shape == "cylinder") return cylinder(body.radius, body.height, body.resolution);
-    if (body.shape == "hollow_sphere")
-      return hollow_sphere(body.radius, body.inner_radius, body.resolution);
+    switch (body.shape) {
+      case BodyShape::beam:
+        return beam(body.size, body.cells, body.jitter);
+      case BodyShape::box:
+        return box(body.size, body.cells, body.jitter);
+      case BodyShape::sphere:
+        return sphere(body.radius, body.resolution);
+      case BodyShape::ellipsoid:
+        return ellipsoid(body.radii, body.resolution);
+      case BodyShape::cylinder:
+        return cylinder(body.radius, body.height, body.resolution);
+      case BodyShape::hollow_sphere:
+        return hollow_sphere(body.radius, body.inner_radius, body.resolution);
+      case BodyShape::file:
+        break;
+    }
   } catch (const Error& error) {
     throw Error(error.kind(), error.message(), error.remedy(), body.mesh_where);
   }
-  throw Error(ErrorKind::internal, "unknown shape " + body.shape);
+  throw Error(ErrorKind::internal, "a body without a mesh and a shape");
 }
 
 // Diagnoses, repairs, and notes what was found.
@@ -98,7 +113,7 @@ void make_sound(PlacedBody& placed) {
 // The ids of a surface's file are those of its vertices: each stands for the node nearest to it.
 void take_ids_of_surface(PlacedBody& placed) {
   const SceneBody& body = *placed.body;
-  if (!body.shape.empty() || !io::is_surface_name(body.mesh)) return;
+  if (body.shape != BodyShape::file || !io::is_surface_name(body.mesh)) return;
   std::vector<Index> nodes(placed.mesh.nodes.size());
   std::iota(nodes.begin(), nodes.end(), 0);
   const NearestNode nearest(placed.mesh.nodes, std::move(nodes));
@@ -170,10 +185,10 @@ double checked_volume(const PlacedBody& placed) {
 PlacedBody place(const Scene& scene, const SceneBody& body) {
   PlacedBody placed;
   placed.body = &body;
-  if (body.shape.empty()) {
+  if (body.shape == BodyShape::file) {
     placed.mesh = read_file(scene, body, placed.source);
   } else {
-    placed.source = "shape " + body.shape;
+    placed.source = fmt::format("shape {}", word_of(body.shape));
     placed.mesh = make_shape(body);
   }
   make_sound(placed);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "sinew/base/vec.h"
+#include "sinew/base/words.h"
 #include "sinew/scene/document.h"
 #include "sinew/scene/keys.h"
 
@@ -43,6 +44,14 @@ class Reader {
 
   // The word of a KeyType::word or number_or_word; absent where the value is a number or missing.
   std::optional<std::string> word(std::string_view key) const;
+  // The same as the enum that the word stands for (base/words.h).
+  template <typename E>
+  bool word(std::string_view key, E& out) const {
+    const std::optional<std::string> text = word(key);
+    if (!text) return false;
+    out = value_of<E>(*text).value_or(out);
+    return true;
+  }
   // The numbers of a point, rotation or matrix, in the unit of the key table; empty where absent.
   std::vector<double> numbers(std::string_view key) const;
   // A table within this one; null where absent.

@@ -22,6 +22,8 @@ namespace fs = std::filesystem;
 }
 
 io::SurfaceSoup read_soup(const Scene& scene, const SceneObstacle& o) {
+  if (const auto given = scene.given.obstacles.find(o.mesh); given != scene.given.obstacles.end())
+    return *given->second;
   const fs::path path = fs::path(scene.base) / o.mesh;
   if (!io::is_surface_name(path))
     refuse(o, fmt::format("is no surface: {}", o.mesh),

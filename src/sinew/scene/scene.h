@@ -4,6 +4,8 @@
 
 #include <array>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,10 +13,45 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/vec.h"
+#include "sinew/base/words.h"
+#include "sinew/io/vtu.h"
 #include "sinew/model/material.h"
 #include "sinew/model/path.h"
+#include "sinew/solver/stepper_kind.h"
 
 namespace sinew {
+
+struct TetMesh;
+namespace io {
+struct SurfaceSoup;
+}
+
+// Meshes that a scene built in code holds in memory, by what its keys `mesh` say in place of a file
+// name.
+struct GivenMeshes {
+  std::map<std::string, std::shared_ptr<const TetMesh>> bodies;
+  std::map<std::string, std::shared_ptr<const io::SurfaceSoup>> obstacles;
+};
+
+// The shapes that a body may have without a mesh file.
+enum class BodyShape { file, beam, box, sphere, ellipsoid, cylinder, hollow_sphere };
+constexpr std::array<Word<BodyShape>, 6> words_of(BodyShape) {
+  return {{{BodyShape::beam, "beam"},
+           {BodyShape::box, "box"},
+           {BodyShape::sphere, "sphere"},
+           {BodyShape::ellipsoid, "ellipsoid"},
+           {BodyShape::cylinder, "cylinder"},
+           {BodyShape::hollow_sphere, "hollow_sphere"}}};
+}
+
+// Where the nodes of a body start a run from (scene/start.h).
+enum class Start { rest, flat, inverted, random };
+constexpr std::array<Word<Start>, 4> words_of(Start) {
+  return {{{Start::rest, "rest"},
+           {Start::flat, "flat"},
+           {Start::inverted, "inverted"},
+           {Start::random, "random"}}};
+}
 
 // Nodes of a body: those that meet every condition given. Places are in the world, as the body is
 // placed at the start, in metres.
@@ -63,7 +100,7 @@ struct SceneBody {
   double mesh_size = 0.0;                 // of surfaces and images: mean edge [m]; 0: sinew-mesh's
   std::optional<Vec3> fit;                // sides of the box that the file is stretched to, each
                                           // axis by itself, from 0 on [mesh unit]; absent: as it is
-  std::string shape;                      // the word of the scene: beam, box ...
+  BodyShape shape = BodyShape::file;      // file: from `mesh`
   std::array<int, 3> cells = {4, 4, 16};  // beam, box
   Vec3 size = Vec3(0.1, 0.1, 0.4);        // beam, box [m]
   double jitter = 0.0;                    // beam, box: share of a cell's edge
@@ -81,7 +118,7 @@ struct SceneBody {
   Vec3 position = Vec3::Zero();  // [m]
   Vec3 velocity = Vec3::Zero();  // [m/s]
   Vec3 spin = Vec3::Zero();      // [rad/s]
-  std::string start = "rest";    // the nodes' positions at the start: rest, flat, inverted, random
+  Start start = Start::rest;     // the nodes' positions at the start
   Material material;             // of tets that no region covers
   std::vector<SceneRegion> regions;
   Location where;
@@ -180,26 +217,31 @@ struct SceneContact {
 };
 
 struct SceneOutput {
-  double fps = 30.0;              // frames per simulated second
-  bool vtu = true;                // write the VTU series
-  std::string encoding = "zlib";  // zlib, base64, ascii
-  double checkpoint = 5.0;        // [s] of wall time between checkpoints; 0: every frame
+  double fps = 30.0;  // frames per simulated second
+  bool vtu = true;    // write the VTU series
+  io::VtuEncoding encoding = io::VtuEncoding::zlib;
+  double checkpoint = 5.0;  // [s] of wall time between checkpoints; 0: every frame
 };
 
+// The keys that say how a scene is stepped.
+inline constexpr std::array<std::string_view, 7> keys_of_steps = {
+    "stepper", "scheme", "dt", "substeps", "precision", "tolerance", "safety"};
+
 struct Scene {
-  std::string name;                  // default: the file's stem
-  std::string title;                 // one line
-  std::string look_for;              // a sentence on what to look for
-  double duration = 2.0;             // [s]
-  std::string stepper = "verlet";    // verlet, implicit, static, auto
-  std::string scheme = "sdirk2";     // implicit: sdirk2, backward-euler
-  double tolerance = 1e-6;           // static: residual of a rest state, as a share of the forces
-  std::string precision = "single";  // of the forces of tets and springs: single, double
-  std::optional<double> dt;          // [s]; absent: "auto"
-  std::optional<double> budget_ms;   // [ms] of wall time that the steps of a frame may take
-  int substeps = 1;                  // the step taken is dt / substeps
-  double safety = 0.9;               // share of the stable step that dt = "auto" takes
+  std::string name;       // default: the file's stem
+  std::string title;      // one line
+  std::string look_for;   // a sentence on what to look for
+  double duration = 2.0;  // [s]
+  StepperKind stepper = StepperKind::verlet;
+  Scheme scheme = Scheme::sdirk2;  // of implicit steps
+  double tolerance = 1e-6;         // static: residual of a rest state, as a share of the forces
+  Precision precision = Precision::single;  // of the forces of tets and springs
+  std::optional<double> dt;                 // [s]; absent: "auto"
+  std::optional<double> budget_ms;          // [ms] of wall time that the steps of a frame may take
+  int substeps = 1;                         // the step taken is dt / substeps
+  double safety = 0.9;                      // share of the stable step that dt = "auto" takes
   bool allow_unstable = false;
+  bool names_steps = false;  // the file has one of keys_of_steps
   Vec3 gravity = Vec3(0.0, -9.81, 0.0);
   int limit_sweeps = 20;
   double limit_tolerance = 1e-3;
@@ -218,6 +260,7 @@ struct Scene {
   std::vector<std::string> warnings;  // what a user should know about how it was read
   std::string document;  // the whole scene as TOML with every override in it; parses to this scene
   std::string base;      // folder that relative mesh paths start from
+  GivenMeshes given;     // of a scene built in code
 };
 
 // Reads a scene file; relative mesh paths start from its folder. `overrides` are those of --set,

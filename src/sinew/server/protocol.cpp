@@ -115,7 +115,7 @@ Request request_of(const std::string& type, Fields& f) {
     const int which = hand();
     const auto node = static_cast<Index>(f.integer("node", any_node));
     const Vec3 point = f.point("point");
-    return Command(Grab{which, node, point, f.number("radius", 0.0)});
+    return Command(live::Grab{which, node, point, f.number("radius", 0.0)});
   }
   if (type == "drag") {
     const int which = hand();
@@ -354,6 +354,10 @@ std::string status_text(const live::Status& s) {
   for (const Vec3& u : s.probes) probes.push_back(vector(u));
   Json obstacles = Json::array();
   for (const live::SphereStatus& o : s.obstacles) obstacles.push_back(rigid_status(o));
+  Json counters = Json::object();
+  for_each_counter(s.counters, [&](const CounterField& field, const auto& value) {
+    counters[std::string(field.name)] = value;
+  });
   Json distance = nullptr;
   if (s.distance) distance = {{"largest", s.distance->largest}, {"mean", s.distance->mean}};
   const Energies& e = s.energy;
@@ -363,7 +367,7 @@ std::string status_text(const live::Status& s) {
                {"step", s.step},
                {"dt", finite_or_null(s.dt)},
                {"stable_step", finite_or_null(s.stable_step)},
-               {"stepper", s.stepper},
+               {"stepper", word_of(s.stepper)},
                {"reason", s.reason},
                {"time_scale", s.time_scale},
                {"rate", s.rate},
@@ -383,8 +387,9 @@ std::string status_text(const live::Status& s) {
                {"volume_ratio", s.volume_ratio},
                {"max_stretch", s.max_stretch},
                {"max_compress", s.max_compress},
-               {"contacts", s.contacts},
-               {"deepest", s.deepest},
+               {"contacts", s.counters.contacts},
+               {"deepest", s.counters.deepest},
+               {"counters", std::move(counters)},
                {"inverted_tets", s.inverted_tets},
                {"hands", std::move(hands)},
                {"probes", std::move(probes)},

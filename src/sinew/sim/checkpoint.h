@@ -2,11 +2,20 @@
 // a hash of itself, so that a torn or foreign file is never taken for a checkpoint.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <string>
+#include <string_view>
 
-#include "sinew/sim/stepping.h"
+#include "sinew/sim/run_state.h"
 
 namespace sinew {
+
+// The same in memory. Throws what read_checkpoint throws; `name` stands for the file in messages.
+std::string encode_run(std::uint64_t model_hash, const RunState& run);
+RunState decode_run(std::string_view bytes, const std::string& name, std::uint64_t model_hash,
+                    std::size_t nodes);
 
 // Throws Error(io).
 void write_checkpoint(const std::filesystem::path& file, const Model& model, const RunState& run);

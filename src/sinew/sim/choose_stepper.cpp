@@ -6,7 +6,9 @@
 #include <cmath>
 #include <optional>
 
+#include "sinew/base/clock.h"
 #include "sinew/base/error.h"
+#include "sinew/contact/find.h"
 #include "sinew/forces/righting.h"
 #include "sinew/forces/volume.h"
 
@@ -16,68 +18,175 @@ namespace {
 // Long enough that the first of them, which finds the loads new, does not decide alone.
 constexpr int trial_steps = 4;
 
+// Where the policy takes implicit steps to keep up with the clock: how close they come to
+// equilibrium [-]. docs/methods/implicit.md tells what that costs.
+constexpr double pace_tolerance = 0.03;
+// What a step of backward Euler to that tolerance costs in explicit ones of single precision: 12 to
+// 17 on the liver of 36k tets, more where the material is stiff.
+constexpr double steps_of_implicit = 25.0;
+// Wall time over simulated time from which on explicit steps are too slow: as a body deforms they
+// become shorter, and estimates of the stable step come on top of what a trial step takes.
+constexpr double most_load = 0.6;
+
+// What only Verlet's step does; null where the model has no such thing.
+const char* only_verlet_knows(const Model& model) {
+  return model.bounces() ? "restitution" : nullptr;
+}
+
 // Puts bodies that start inside out where they are led back to: what counts is how they go on.
-void right(const Model& model, Workspace& workspace, State& state) {
+void recover(const Model& model, Workspace& workspace, State& state) {
   if (!model.has_volume) return;
   compute_volume_pressures(model, state.position, workspace);
   if (find_tangled(model, workspace) > 0) put_tangled_bodies_at_rest(model, workspace, state);
 }
 
 struct Trial {
-  double steps = 0.0;     // a frame
   double newton = 0.0;    // Newton steps a frame
   double products = 0.0;  // Hessian products a frame
   double work = 0.0;      // of a frame, in steps of Verlet in double precision
 };
 
-// Nothing where a step finds no equilibrium.
-std::optional<Trial> try_implicit(const Model& model, const Contest& contest,
-                                  const ImplicitOptions& options, State state,
-                                  ImplicitStepper& stepper) {
-  Trial trial;
-  right(model, stepper.workspace(), state);
-  try {
-    for (int i = 0; i < trial_steps; ++i) {
-      const ImplicitReport report = stepper.step(contest.implicit_step, options, state);
-      trial.newton += report.newton;
-      trial.products += report.products;
-    }
-  } catch (const Error& error) {
-    if (error.kind() != ErrorKind::diverged) throw;
-    return std::nullopt;
+class Policy {
+ public:
+  Policy(const SteppingOptions& options, const Model& model, const Controls& controls,
+         const State& start)
+      : options_(options), model_(model), controls_(controls), start_(start) {}
+
+  StepperChoice choose() const {
+    if (options_.pace != Pace::any) return by_the_clock();
+    if (options_.stepper == StepperKind::automatic) return by_work();
+    return ready(options_.stepper, {}, options_.method);
   }
-  trial.steps = contest.interval / contest.implicit_step;
-  trial.newton *= trial.steps / trial_steps;
-  trial.products *= trial.steps / trial_steps;
-  trial.work = step_cost * trial.steps + newton_cost * trial.newton + product_cost * trial.products;
-  return trial;
-}
+
+ private:
+  StepperChoice ready(StepperKind kind, std::string reason, const StepperOptions& method) const {
+    StepperChoice choice;
+    choice.kind = kind;
+    choice.reason = std::move(reason);
+    choice.stepper = make_stepper(kind, model_, method);
+    choice.first = choice.stepper->begin(controls_, start_, choice.memory);
+    return choice;
+  }
+
+  // As many steps a frame as the options and the stepper make of it.
+  double steps_a_frame(const StepperChoice& choice) const {
+    return options_.interval / options_.first_length(choice.first);
+  }
+
+  // Nothing where a step finds no equilibrium.
+  std::optional<Trial> try_steps(const StepperChoice& choice) const {
+    Trial trial;
+    State state = start_;
+    StepMemory memory = choice.memory;
+    recover(model_, choice.stepper->workspace(), state);
+    const double h = options_.first_length(choice.first);
+    try {
+      for (int i = 0; i < trial_steps; ++i) {
+        const StepReport report = choice.stepper->step(h, controls_, {}, state, memory);
+        trial.newton += report.newton;
+        trial.products += report.products;
+      }
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::diverged) throw;
+      return std::nullopt;
+    }
+    const double steps = steps_a_frame(choice);
+    trial.newton *= steps / trial_steps;
+    trial.products *= steps / trial_steps;
+    trial.work = step_cost * steps + newton_cost * trial.newton + product_cost * trial.products;
+    return trial;
+  }
+
+  // stepper = "auto"
+  StepperChoice by_work() const {
+    const StepperOptions& method = options_.method;
+    if (options_.budget) {
+      return ready(StepperKind::implicit, "only implicit steps keep to budget_ms", method);
+    }
+    StepperChoice verlet = ready(StepperKind::verlet, {}, method);
+    const double h = options_.first_length(verlet.first);
+    const double stable = verlet.first.stable;
+    const auto because = [](StepperChoice choice, std::string reason) {
+      choice.reason = std::move(reason);
+      return choice;
+    };
+    if (const char* known = only_verlet_knows(model_)) {
+      return because(std::move(verlet), fmt::format("implicit steps do not know {}", known));
+    }
+    if (!std::isfinite(stable)) return because(std::move(verlet), "nothing can move");
+    StepperChoice implicit = ready(StepperKind::implicit, {}, method);
+    if (options_.dt && h > stable) {
+      return because(
+          std::move(implicit),
+          fmt::format("the given step {:.3g} s is above the stable one, {:.3g} s", h, stable));
+    }
+    const double verlet_work = std::ceil(options_.interval / h);
+    const std::string text = fmt::format("verlet: stable step {:.3g} ms, {:.0f} steps a frame",
+                                         1e3 * stable, verlet_work);
+    const auto trial = try_steps(implicit);
+    if (!trial) {
+      return because(std::move(verlet), text + "; implicit: a trial step found no equilibrium");
+    }
+    const bool single = method.precision == Precision::single;
+    const double work = trial->work / (single ? single_step_cost : 1.0);
+    return because(
+        work < verlet_work ? std::move(implicit) : std::move(verlet),
+        fmt::format("{}; implicit: {:.1f} Newton steps and {:.1f} products a frame, the work of "
+                    "{:.0f} steps of Verlet",
+                    text, trial->newton, trial->products, work));
+  }
+
+  // Of two trial steps the shorter wall time [s].
+  double wall_of_a_step(const StepperChoice& choice) const {
+    State state = start_;
+    StepMemory memory = choice.memory;
+    const double h = options_.first_length(choice.first);
+    double least = no_limit;
+    for (int i = 0; i < 3; ++i) {
+      const Clock::time_point start = Clock::now();
+      try {
+        choice.stepper->step(h, controls_, {}, state, memory);
+      } catch (const Error&) {
+        return no_limit;
+      }
+      least = std::min(least, seconds_since(start));
+    }
+    return least;
+  }
+
+  StepperChoice by_the_clock() const {
+    const StepperOptions fast{Scheme::backward_euler, pace_tolerance, options_.method.precision};
+    const bool suits = suits_implicit(model_);
+    if (suits && options_.pace == Pace::missed) {
+      return ready(StepperKind::implicit, "explicit steps fell behind the clock", fast);
+    }
+    StepperChoice verlet = ready(StepperKind::verlet, {}, options_.method);
+    const double steps = steps_a_frame(verlet);
+    if (!suits || steps < steps_of_implicit) return verlet;
+    const double load = steps * wall_of_a_step(verlet) / options_.interval;
+    if (load < most_load) return verlet;
+    return ready(StepperKind::implicit,
+                 fmt::format("explicit steps, {:.0f} a frame, would take {:.1f} times real time",
+                             steps, load),
+                 fast);
+  }
+
+  const SteppingOptions& options_;
+  const Model& model_;
+  const Controls& controls_;
+  const State& start_;
+};
 
 }  // namespace
 
-Choice choose_stepper(const Scene& scene, const Model& model, const State& start,
-                      const Contest& contest, const ImplicitOptions& options,
-                      ImplicitStepper& stepper) {
-  if (scene.budget_ms) return {"implicit", "only implicit steps keep to budget_ms"};
-  if (contest.projection != nullptr) {
-    return {"verlet", fmt::format("implicit steps do not know {}", contest.projection)};
-  }
-  if (!std::isfinite(contest.stable_step)) return {"verlet", "nothing can move"};
-  if (scene.dt && contest.verlet_step > contest.stable_step) {
-    return {"implicit", fmt::format("the given step {:.3g} s is above the stable one, "
-                                    "{:.3g} s",
-                                    contest.verlet_step, contest.stable_step)};
-  }
-  const double verlet_work = std::ceil(contest.interval / contest.verlet_step);
-  const std::string verlet = fmt::format("verlet: stable step {:.3g} ms, {:.0f} steps a frame",
-                                         1e3 * contest.stable_step, verlet_work);
-  const auto trial = try_implicit(model, contest, options, start, stepper);
-  if (!trial) return {"verlet", verlet + "; implicit: a trial step found no equilibrium"};
-  const double work = trial->work / (scene.precision == "single" ? single_step_cost : 1.0);
-  return {work < verlet_work ? "implicit" : "verlet",
-          fmt::format("{}; implicit: {:.1f} Newton steps and {:.1f} products a frame, the work of "
-                      "{:.0f} steps of Verlet",
-                      verlet, trial->newton, trial->products, work)};
+bool suits_implicit(const Model& model) {
+  return !model.ground && !ContactFinder::anything_to_find(model) && model.limited.empty() &&
+         !model.has_volume_limit;
+}
+
+StepperChoice choose_stepper(const SteppingOptions& options, const Model& model,
+                             const Controls& controls, const State& start) {
+  return Policy(options, model, controls, start).choose();
 }
 
 }  // namespace sinew

@@ -1,113 +1,83 @@
-// Chooses the steps of a run: fixed, or as the stable step asks; or rest states, one per frame.
-// Everything that decides the next step is in RunState, so that a run can be cut anywhere and go on
-// to the same bits.
+// Cuts time into frames and frames into steps: fixed ones, or as the stable step asks; or rest
+// states, one a frame. Knows no stepper but by its interface (solver/stepper.h). Everything that
+// decides the next step is in RunState, so that a run can be cut anywhere and go on to the same
+// bits.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <optional>
-#include <string>
-#include <vector>
 
-#include "sinew/forces/workspace.h"
-#include "sinew/model/state.h"
-#include "sinew/scene/scene.h"
-#include "sinew/solver/implicit.h"
-#include "sinew/solver/stable_step.h"
-#include "sinew/solver/static.h"
+#include "sinew/model/controls.h"
+#include "sinew/sim/run_state.h"
+#include "sinew/sim/stepping_options.h"
 
 namespace sinew {
 
-// What the steps of one frame took: of the frame under way, or of the last one finished.
-struct FrameWork {
-  double seconds = 0.0;           // of wall time
-  std::int64_t steps = 0;         // [1]
-  std::int64_t newton_steps = 0;  // of rest states and implicit steps
-  std::int64_t products = 0;      // Hessian products they took
-  double residual = 0.0;          // the largest that was left [-]
-  std::int64_t cut_short = 0;     // steps that budget_ms ended before their tolerance was reached
-};
-
-// State, plus where the run stands: all that a checkpoint holds.
-struct RunState {
-  State state;
-  std::string stepper;          // the one that runs: verlet, implicit, static; empty: to be chosen
-  std::string stepper_reason;   // of stepper = "auto": why
-  std::int64_t frame = 0;       // frames finished; frame 0 is the start
-  std::int64_t steps_left = 0;  // steps to the end of the frame under way
-  std::int64_t steps_to_watch = 0;    // steps until the stable step is looked at again
-  std::int64_t watch_interval = 0;    // steps from the last look to that one
-  double step = 0.0;                  // h now taken [s]
-  double target_step = 0.0;           // the longest h that may be taken [s]
-  double stable_step = 0.0;           // h_c when last looked at [s]
-  double smallest_stable_step = 0.0;  // over the run [s]
-  std::vector<Vec3> stiff_mode;       // the mode that limits the step (nodes)
-  std::int64_t step_reductions = 0;   // times that the step was made shorter during the run
-  std::int64_t step_increases = 0;    // times that it was made longer again
-  std::int64_t step_cuts = 0;         // times that an implicit step was cut in half
-  std::int64_t limit_sweeps = 0;      // sweeps over limited springs in all
-  std::int64_t unmet_limits = 0;      // steps that ended with a limit violated
-  std::int64_t righting_steps = 0;    // steps in which a tangled body was led back
-  std::int64_t contacts = 0;          // places that touched in the last step
-  double deepest = 0.0;               // a place was left inside what it touched, of all steps [m]
-  double depth = 0.0;                 // the same of the last step [m]
-  double friction_work = 0.0;         // of contacts, over the run [J]
-  std::int64_t newton_steps = 0;      // of rest states and implicit steps, in all
-  std::int64_t products = 0;          // Hessian products it took, in all
-  double residual = 0.0;       // of the last rest state, or the largest of the implicit steps [-]
-  double peak_stretch = 0.0;   // over the frames [-]
-  double peak_compress = 0.0;  // over the frames [-]
-  std::int64_t peak_inverted_tets = 0;  // over the frames
-  double start_energy = 0.0;            // total at the start [J]
-  double wall_seconds = 0.0;            // spent so far
-  std::vector<double> frame_times;      // of the frames written [s]
-  FrameWork work;
-  std::int64_t frames_cut_short = 0;  // frames with steps that budget_ms ended
-  std::vector<double> frame_seconds;  // FrameWork::seconds of every frame, where there is a budget
-};
-
 class Stepping {
  public:
-  // stepper = "verlet": checks the scene's dt against the stable step of the model as it starts.
-  // Throws Error(unstable) where dt / substeps is above it and the scene does not allow that.
-  // stepper = "auto": sets run.stepper and its reason, unless a checkpoint has.
-  Stepping(const Scene& scene, const Model& model, RunState& run);
+  // Chooses the stepper (sim/choose_stepper.h) unless `run` says which one it goes on with. Throws
+  // Error(unstable) where the given step is above the stable one and the options do not allow that.
+  // The model must outlive the object.
+  Stepping(const SteppingOptions& options, const Model& model, const Controls& controls,
+           RunState& run);
+  Stepping(const Scene& scene, const Model& model, const Controls& controls, RunState& run)
+      : Stepping(stepping_options(scene), model, controls, run) {}
 
-  // Runs to the end of the next frame, or until `stop` is set after a step. Returns true when the
-  // frame is finished. Throws Error(diverged), see verlet_step and StaticSolver::solve.
-  bool advance_frame(RunState& run, const std::atomic<bool>* stop);
+  // All of these throw Error(diverged), see verlet_step and StaticSolver::solve. `stop` ends them
+  // after the step under way, and the search for a rest state before it is found.
 
+  // Takes the next step. Returns true when the frame is finished.
+  bool step(const Controls& controls, RunState& run, const std::atomic<bool>* stop = nullptr);
+
+  // Steps to the end of the frame. Returns true when that is reached.
+  bool advance_frame(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
+
+  // Towards `end` [s]: to the end of the frame under way where that is not later, or else to `end`
+  // itself (with a given dt: the step nearest to it), which may be within a frame.
+  enum class Progress { arrived, frame, stopped };
+  Progress advance_to(const Controls& controls, RunState& run, double end,
+                      const std::atomic<bool>* stop);
+
+  // Takes one step of h [s] > 0, wherever frames end.
+  void take_step(const Controls& controls, RunState& run, double h);
+
+  // Throws Error(unstable) where a step may not be as long as h [s].
+  void require_stable(const Controls& controls, RunState& run, double h);
+
+  // How long the step is that step() takes next [s].
+  double prepare(const Controls& controls, RunState& run);
+
+  // The longest stable step from here [s]; infinity: any.
+  double longest_step(const RunState& run) const { return stepper_->stable_step(run.memory); }
+
+  // Makes the run go on from its state's time, which something else has set.
+  void resume_at(RunState& run) const;
+
+  // Frames up to the end; the largest number where there is none.
   std::int64_t frame_count() const { return frames_; }
-  Workspace& workspace() { return workspace_; }
+  // Between the ends of frames [s], also where rest states need only one.
+  double frame_interval() const { return frame_interval_; }
+  Workspace& workspace() { return stepper_->workspace(); }
 
  private:
+  bool automatic() const { return !options_.dt; }
   double frame_end(std::int64_t frame) const;
-  void choose(const Scene& scene, const StableStep& stable, double implicit_step, RunState& run);
-  double verlet_step_at(double stable) const;
+  void begin_run(const Controls& controls, RunState& run);
   void begin_frame(RunState& run) const;
-  void implicit_steps(RunState& run, const std::atomic<bool>* stop);
-  void verlet_steps(RunState& run, const std::atomic<bool>* stop);
-  void watch(RunState& run);
+  void finish_frame(RunState& run) const;
+  void plan(RunState& run, double end, std::int64_t given_steps) const;
+  void watch(const Controls& controls, RunState& run);
+  bool one_step(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
+  bool steps(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
   void shorten(RunState& run, double step) const;
-  void watch_guard(RunState& run) const;
   bool too_long(const RunState& run, double stable, double slack) const;
-  bool rest_frame(RunState& run, const std::atomic<bool>* stop);
 
   const Model& model_;
-  Workspace workspace_;
-  bool automatic_;
-  double given_ = 0.0;  // dt / substeps [s]; not where automatic_
-  bool allow_unstable_;
-  double safety_;
-  double duration_;
-  double interval_;  // between frames [s]
-  std::int64_t frames_;
-  double tolerance_;                           // of rest states and implicit steps
-  std::optional<double> budget_;               // wall time of a frame's steps [s]
-  std::unique_ptr<StaticSolver> static_;       // stepper = "static"
-  std::unique_ptr<ImplicitStepper> implicit_;  // stepper = "implicit"
-  ImplicitOptions implicit_options_;
+  SteppingOptions options_;  // interval: of the frames that are stepped to
+  double frame_interval_ = 0.0;
+  std::unique_ptr<Stepper> stepper_;
+  std::int64_t frames_ = 0;
 };
 
 }  // namespace sinew

@@ -5,7 +5,7 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/network.h"
-#include "sinew/forces/ties.h"
+#include "sinew/forces/terms.h"
 #include "sinew/forces/volume.h"
 #include "sinew/solver/bound.h"
 #include "sinew/solver/mean_edge.h"
@@ -35,9 +35,15 @@ std::vector<double> node_compliance(const Model& model, double inertia, double r
       d[uz(end)] += model.stiffness[s] + rate * model.damping[s];
     }
   }
-  for_each_tie_pair(model, [&](Index i, Index j, double k) {
-    d[uz(i)] += k;
-    d[uz(j)] += k;
+  const Controls none;
+  for_each_type(Terms{}, [&](auto term) {
+    term.for_each_element({model, none, model.rest_position}, Tangent::full, [&](const Element& e) {
+      for_each_pair(e, [&](Index i, Index j, double w_i, double w_j) {
+        const double k = -e.norm * w_i * w_j;
+        d[uz(i)] += k;
+        d[uz(j)] += k;
+      });
+    });
   });
   for (std::size_t t = 0; t < model.tets.size() && model.has_volume; ++t) {
     double bulk = model.tet_bulk[t];
@@ -127,7 +133,8 @@ Constraints::Constraints(const Model& model, double inertia, double rate, bool f
   if (model.ground) {
     // Single masses have no size but the way they fall in a step.
     const double edge = mean_edge(model);
-    ground_tolerance_ = ground_tolerance * (edge > 0.0 ? edge : model.gravity.norm() / inertia);
+    ground_tolerance_ =
+        ground_tolerance * (edge > 0.0 ? edge : model.start_gravity.norm() / inertia);
     ground_stiffness_.assign(uz(model.body_node_count()), 0.0);
     for (std::size_t i = 0; i < ground_stiffness_.size(); ++i) {
       if (compliance[i] > 0.0) ground_stiffness_[i] = ratio / compliance[i];

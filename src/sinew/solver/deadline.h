@@ -1,4 +1,5 @@
-// When work that costs wall time has to stop: of budget mode, docs/methods/budget.md.
+// When work that costs wall time has to stop: of budget mode,
+// docs/methods/budget.md.
 #pragma once
 
 #include <optional>

@@ -13,7 +13,7 @@ namespace sinew {
 // method has little to do, that start anew without velocity whenever the body has passed its
 // fastest (kinetic damping, Cundall 1976). Comes through where a stiff part has to turn far and
 // straight steps go astray. All of the load at once.
-NewtonReport StaticSolver::fall_to_rest(double start_time, double time,
+NewtonReport StaticSolver::fall_to_rest(const Controls& controls, double start_time, double time,
                                         const StaticOptions& options, StaticProgress progress,
                                         State& state) {
   constexpr int few = 10;        // Newton steps
@@ -21,10 +21,10 @@ NewtonReport StaticSolver::fall_to_rest(double start_time, double time,
   double h = 1.0 / 30.0;         // [s]
   double pull = 1.0;             // what still moves the body, as a share of the load
   double fastest = 0.0;          // |v|^2
-  const Field outer = outer_forces(model_, state);
+  const Field outer = outer_forces(model_, controls, state);
   double load = std::sqrt(dot(outer, outer));  // [N]
   NewtonReport report;
-  report.products = move_pins_to(start_time, time, 1.0, state);
+  report.products = move_pins_to(controls, start_time, time, 1.0, state);
   Field velocity(state.position.size(), Vec3::Zero());
   Field inertial;
   const auto stand_still = [&] {
@@ -35,7 +35,7 @@ NewtonReport StaticSolver::fall_to_rest(double start_time, double time,
     const State before = state;
     inertial = before.position;
     add(inertial, h, velocity);
-    Objective objective{model_};
+    Objective objective{model_, controls};
     objective.inertia = 1.0 / (h * h);
     objective.inertial = &inertial;
     if (!constraints_.empty()) objective.constraints = &constraints_;
@@ -74,8 +74,8 @@ NewtonReport StaticSolver::fall_to_rest(double start_time, double time,
     stand_still();
     if (pull > near) continue;
     const State here = state;
-    const NewtonReport rest =
-        settle({model_}, {options.tolerance, options.max_newton, options.stop, {}}, state);
+    const NewtonReport rest = settle(
+        {model_, controls}, {options.tolerance, options.max_newton, options.stop, {}}, state);
     report.newton += rest.newton;
     report.products += rest.products;
     if (rest.rests || rest.stopped) {

@@ -74,16 +74,18 @@ bool may_take_single(const Model& model, double tolerance) {
 ImplicitStepper::ImplicitStepper(const Model& model)
     : model_(model), workspace_(model), linear_(model) {}
 
-void ImplicitStepper::prepare(double h, const ImplicitOptions& options) {
+void ImplicitStepper::prepare(double h, const Controls& controls, const ImplicitOptions& options) {
   if (options.scheme == Scheme::sdirk2) h *= sdirk2_share;
-  linear_.factor({.model = model_, .inertia = 1.0 / (h * h), .rate = 1.0 / h}, workspace_);
+  linear_.factor({.model = model_, .controls = controls, .inertia = 1.0 / (h * h), .rate = 1.0 / h},
+                 0.0, workspace_);
 }
 
 // Backward Euler over h from the positions `from` with `velocity`, dashpots in their directions at
 // state.position; loads and pins as they are at state.time. Moves the state's positions and sets
 // its velocities.
 bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
-                            const ImplicitOptions& options, State& state, ImplicitReport& report) {
+                            const Controls& controls, const ImplicitOptions& options, State& state,
+                            ImplicitReport& report) {
   const double inertia = 1.0 / (h * h);
   // Frames end at round times, and the last digits of h differ from frame to frame: rounded, so
   // that what is kept from step to step is what a resumed run makes anew.
@@ -97,9 +99,8 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   const Field inertial = blend(1.0, from, h, velocity);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
   const Objective objective{
-      model_,  nullptr,   0.0,
-      inertia, &inertial, 1.0 / h,
-      &from,   &lag,      constraints_->empty() ? nullptr : constraints_.get()};
+      model_,    controls, nullptr, 0.0,  inertia,
+      &inertial, 1.0 / h,  &from,   &lag, constraints_->empty() ? nullptr : constraints_.get()};
   const NewtonOptions newton_options{
       options.tolerance, options.max_newton, nullptr, {}, options.deadline};
   const bool single = options.single && may_take_single(model_, options.tolerance);
@@ -141,33 +142,34 @@ void ImplicitStepper::account(const Field& before, double since, double weight, 
   state.energy.work_in += work_of_the_outside(model_, before, since, state, workspace_);
 }
 
-bool ImplicitStepper::sdirk2(double h, const ImplicitOptions& options, State& state,
-                             ImplicitReport& report) {
+bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitOptions& options,
+                             State& state, ImplicitReport& report) {
   const Field x = state.position;
   const Field v = state.half_velocity;
   const double time = state.time;
   const double g = sdirk2_share;
   state.time = time + g * h;
-  if (!solve(x, v, g * h, options, state, report)) return false;
+  if (!solve(x, v, g * h, controls, options, state, report)) return false;
   if (act(state.reactions)) return true;
   const Field v1 = state.half_velocity;
   account(x, time, (1.0 - g) * h, state);
   const Field x1 = state.position;
   state.time = time + h;
   if (!solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
-             g * h, options, state, report)) {
+             g * h, controls, options, state, report)) {
     return false;
   }
   account(x1, time + g * h, g * h, state);
   return true;
 }
 
-bool ImplicitStepper::backward_euler(double h, const ImplicitOptions& options, State& state,
+bool ImplicitStepper::backward_euler(double h, const Controls& controls,
+                                     const ImplicitOptions& options, State& state,
                                      ImplicitReport& report) {
   const Field x = state.position;
   const Field v = state.half_velocity;
   state.time += h;
-  if (!solve(x, v, h, options, state, report)) return false;
+  if (!solve(x, v, h, controls, options, state, report)) return false;
   account(x, state.time - h, h, state);
   if (constraints_->empty()) return true;
   // The impulses of the ground and the limits work on the mean of the velocities before and after
@@ -183,29 +185,31 @@ bool ImplicitStepper::backward_euler(double h, const ImplicitOptions& options, S
   return true;
 }
 
-bool ImplicitStepper::try_step(double h, const ImplicitOptions& options, State& state,
-                               ImplicitReport& report) {
+bool ImplicitStepper::try_step(double h, const Controls& controls, const ImplicitOptions& options,
+                               State& state, ImplicitReport& report) {
   state.last_step = 0.0;  // the velocity is that of the time
   bool done = false;
   if (options.scheme == Scheme::sdirk2 && !act(state.reactions)) {
     const State before = state;
-    if (!sdirk2(h, options, state, report)) return false;
+    if (!sdirk2(h, controls, options, state, report)) return false;
     done = !act(state.reactions);
     if (!done) state = before;
   }
-  if (!done && !backward_euler(h, options, state, report)) return false;
+  if (!done && !backward_euler(h, controls, options, state, report)) return false;
   ++state.step;
   return true;
 }
 
-ImplicitReport ImplicitStepper::step(double h, const ImplicitOptions& options, State& state) {
+ImplicitReport ImplicitStepper::step(double h, const Controls& controls,
+                                     const ImplicitOptions& options, State& state) {
   prepare_stiffness(model_, state.position, workspace_);
-  if (find_tangled(model_, workspace_) > 0) return lead_back(h, options, state);
-  return advance(h, options, state);
+  if (find_tangled(model_, workspace_) > 0) return lead_back(h, controls, options, state);
+  return advance(h, controls, options, state);
 }
 
 // Steps that are cut in half where Newton's method does not arrive.
-ImplicitReport ImplicitStepper::advance(double h, const ImplicitOptions& options, State& state) {
+ImplicitReport ImplicitStepper::advance(double h, const Controls& controls,
+                                        const ImplicitOptions& options, State& state) {
   ImplicitReport report;
   const State start = state;
   double length = h;
@@ -214,7 +218,7 @@ ImplicitReport ImplicitStepper::advance(double h, const ImplicitOptions& options
   for (int cuts = 0; done < parts;) {
     const State before = state;
     const double residual = report.residual;
-    if (try_step(length, options, state, report)) {
+    if (try_step(length, controls, options, state, report)) {
       ++done;
       continue;
     }

@@ -4,15 +4,12 @@
 #include <memory>
 
 #include "sinew/forces/workspace.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/linear_solver.h"
+#include "sinew/solver/stepper_kind.h"
 
 namespace sinew {
-
-enum class Scheme {
-  backward_euler,  // first order, damps every swing
-  sdirk2           // second order, damps hardly, two solves a step
-};
 
 struct ImplicitOptions {
   Scheme scheme = Scheme::sdirk2;
@@ -63,24 +60,29 @@ class ImplicitStepper {
   // Where Newton's method does not arrive, the step is taken in two halves, and so on. Throws
   // Error(diverged) where ten halvings are not enough. With a deadline the step is what Newton's
   // method has by then, and no step is cut: its potential is below that of standing still.
-  ImplicitReport step(double h, const ImplicitOptions& options, State& state);
+  ImplicitReport step(double h, const Controls& controls, const ImplicitOptions& options,
+                      State& state);
 
   // Makes what steps of length h need and a deadline should not pay for.
-  void prepare(double h, const ImplicitOptions& options);
+  void prepare(double h, const Controls& controls, const ImplicitOptions& options);
 
   Workspace& workspace() { return workspace_; }
 
  private:
-  ImplicitReport advance(double h, const ImplicitOptions& options, State& state);
-  ImplicitReport lead_back(double h, const ImplicitOptions& options, State& state);
+  ImplicitReport advance(double h, const Controls& controls, const ImplicitOptions& options,
+                         State& state);
+  ImplicitReport lead_back(double h, const Controls& controls, const ImplicitOptions& options,
+                           State& state);
   bool half_righted(const State& led, std::vector<char>& righted);
-  bool try_step(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
-  bool sdirk2(double h, const ImplicitOptions& options, State& state, ImplicitReport& report);
-  bool backward_euler(double h, const ImplicitOptions& options, State& state,
-                      ImplicitReport& report);
+  bool try_step(double h, const Controls& controls, const ImplicitOptions& options, State& state,
+                ImplicitReport& report);
+  bool sdirk2(double h, const Controls& controls, const ImplicitOptions& options, State& state,
+              ImplicitReport& report);
+  bool backward_euler(double h, const Controls& controls, const ImplicitOptions& options,
+                      State& state, ImplicitReport& report);
   void account(const Field& before, double since, double weight, State& state);
-  bool solve(const Field& from, const Field& velocity, double h, const ImplicitOptions& options,
-             State& state, ImplicitReport& report);
+  bool solve(const Field& from, const Field& velocity, double h, const Controls& controls,
+             const ImplicitOptions& options, State& state, ImplicitReport& report);
 
   const Model& model_;
   Workspace workspace_;

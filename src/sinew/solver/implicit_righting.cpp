@@ -37,12 +37,13 @@ bool ImplicitStepper::half_righted(const State& led, std::vector<char>& righted)
 
 // Minimising leads into the nearest fold, so the nodes of tangled bodies are given the way that
 // righting pulls them; everything else takes its implicit step beside them.
-ImplicitReport ImplicitStepper::lead_back(double h, const ImplicitOptions& options, State& state) {
-  const double energy = measure_energies(model_, state, workspace_).total();
+ImplicitReport ImplicitStepper::lead_back(double h, const Controls& controls,
+                                          const ImplicitOptions& options, State& state) {
+  const double energy = measure_energies(model_, controls, state, workspace_).total();
   State led = state;
   std::vector<char> righted;
   for (int way = 0; way < most_ways; ++way) {
-    lead_tangled_bodies(model_, h, workspace_, led);
+    lead_tangled_bodies(model_, controls, h, workspace_, led);
     if (model_.ground) lift_onto_ground(model_, led.position);
     if (!half_righted(led, righted)) break;
   }
@@ -65,7 +66,7 @@ ImplicitReport ImplicitStepper::lead_back(double h, const ImplicitOptions& optio
     }
   }
   state.reactions = {};
-  ImplicitReport report = ImplicitStepper(others).advance(h, options, state);
+  ImplicitReport report = ImplicitStepper(others).advance(h, controls, options, state);
   report.righted = 1;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     if (model_.inverse_mass[i] > others.inverse_mass[i]) {
@@ -73,7 +74,7 @@ ImplicitReport ImplicitStepper::lead_back(double h, const ImplicitOptions& optio
     }
   }
   state.reactions = {};
-  state.energy.work_in += measure_energies(model_, state, workspace_).total() - energy;
+  state.energy.work_in += measure_energies(model_, controls, state, workspace_).total() - energy;
   return report;
 }
 

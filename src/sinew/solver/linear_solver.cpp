@@ -22,7 +22,7 @@ LinearSolver::LinearSolver(const Model& model)
   }
 }
 
-void LinearSolver::factor(const Objective& objective, Workspace& workspace) {
+void LinearSolver::factor(const Objective& objective, double time, Workspace& workspace) {
   if (is_factored(objective)) return;
   const Field& rest_position = objective.model.rest_position;
   Objective rest = objective;
@@ -33,7 +33,7 @@ void LinearSolver::factor(const Objective& objective, Workspace& workspace) {
   rest.inertia = static_cast<double>(static_cast<float>(objective.inertia));
   if (rest.inertia > 0.0 && objective.rate > 0.0) rest.rate = std::sqrt(rest.inertia);
   prepare_stiffness(objective.model, rest_position, workspace);
-  matrix_.assemble(rest, rest_position, workspace);
+  matrix_.assemble(rest, rest_position, time, workspace);
   preconditioner_.factor(matrix_);
   factored_model_ = &objective.model;
   factored_inertia_ = static_cast<float>(objective.inertia);
@@ -44,13 +44,14 @@ bool LinearSolver::is_factored(const Objective& objective) const {
          factored_inertia_ == static_cast<float>(objective.inertia);
 }
 
-void LinearSolver::assemble(const Objective& objective, const Field& x, Workspace& workspace) {
+void LinearSolver::assemble(const Objective& objective, const Field& x, double time,
+                            Workspace& workspace) {
   if (!is_factored(objective)) {
-    factor(objective, workspace);
+    factor(objective, time, workspace);
     prepare_stiffness(objective.model, x, workspace);
   }
   if (objective.constraints != nullptr) objective.constraints->linearise(x, workspace);
-  matrix_.assemble(objective, x, workspace);
+  matrix_.assemble(objective, x, time, workspace);
   preconditioner_.turn(x);
 }
 

@@ -43,7 +43,12 @@ std::vector<Field> combined(const std::vector<Field>& block, const Eigen::Matrix
 class Subspace {
  public:
   Subspace(const Model& model, const Field& x, int size)
-      : model_(model), x_(x), solver_(model), block_(start_block(model, size)) {}
+      : model_(model),
+        x_(x),
+        controls_(initial_controls(model)),
+        at_{model, controls_, x},
+        solver_(model),
+        block_(start_block(model, size)) {}
 
   // One inverse iteration and Ritz step; eigenvalues, increasing.
   Eigen::VectorXd iterate() {
@@ -52,15 +57,14 @@ class Subspace {
       const Field right = mass_times(u);
       const double guess = omega2_.size() > 0 ? 1.0 / omega2_[static_cast<Eigen::Index>(k)] : 0.0;
       for (Vec3& value : u) value *= guess;
-      solver_.solve_tangent(x_, right, 1e-8, u);
+      solver_.solve_tangent(at_, right, 1e-8, u);
     }
     const auto size = static_cast<Eigen::Index>(block_.size());
     Eigen::MatrixXd k(size, size), m(size, size);
     prepare_stiffness(model_, x_, solver_.workspace());
     Field ku(x_.size());
     for (std::size_t a = 0; a < block_.size(); ++a) {
-      stiffness_damping_times(model_, x_, 1.0, 0.0, block_[a], Tangent::full, solver_.workspace(),
-                              ku);
+      stiffness_damping_times(at_, 1.0, 0.0, block_[a], Tangent::full, solver_.workspace(), ku);
       const Field mu = mass_times(block_[a]);
       for (std::size_t b = 0; b < block_.size(); ++b) {
         k(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(a)) = dot(block_[b], ku);
@@ -88,6 +92,8 @@ class Subspace {
 
   const Model& model_;
   const Field& x_;
+  const Controls controls_;
+  const Configuration at_;
   StaticSolver solver_;
   std::vector<Field> block_;
   Eigen::VectorXd omega2_;  // of the block [rad2/s2]; empty before the first iteration

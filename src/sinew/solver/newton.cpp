@@ -54,8 +54,8 @@ Field way(const Objective& objective, const State& state) {
 // out = C u, dashpots and viscosity as at objective.lag, and drag.
 void damping_times(const Objective& objective, const Field& u, Workspace& workspace, Field& out) {
   out.resize(u.size());
-  stiffness_damping_times(objective.model, *objective.lag, 0.0, 1.0, u, Tangent::full, workspace,
-                          out);
+  stiffness_damping_times({objective.model, objective.controls, *objective.lag}, 0.0, 1.0, u,
+                          Tangent::full, workspace, out);
 }
 
 // What is left of digits in a force that rests: a unit in the last place of the positions times
@@ -76,7 +76,7 @@ double rounding_force(const Objective& objective, const LinearSolver& linear, co
 double carried(const Objective& objective, double material, const State& state,
                const Workspace& workspace) {
   const Model& model = objective.model;
-  const Field outer = outer_forces(model, state);
+  const Field outer = outer_forces(model, objective.controls, state);
   double inertial = 0.0;
   if (objective.inertia > 0.0) {
     inertial = parallel_sum(model.node_count(), [&](Index i) {
@@ -172,7 +172,7 @@ class Reach {
 
 double objective_value(const Objective& objective, const State& state, Workspace& workspace) {
   const Model& model = objective.model;
-  double e = potential_energy(model, state, workspace);
+  double e = potential_energy(model, objective.controls, state, workspace);
   if (objective.share != 0.0) {
     e += objective.share * parallel_sum(model.node_count(), [&](Index i) {
            return (*objective.dead_force)[uz(i)].dot(state.position[uz(i)] -
@@ -197,7 +197,7 @@ double objective_value(const Objective& objective, const State& state, Workspace
 
 Field objective_force(const Objective& objective, const State& state, Workspace& workspace) {
   const Model& model = objective.model;
-  compute_forces(model, state, workspace);
+  compute_forces(model, objective.controls, state, workspace);
   if (objective.constraints != nullptr) {
     objective.constraints->add_forces(state.position, workspace, workspace.force);
   }
@@ -244,7 +244,7 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
     const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.3);
     // Forces in single precision leave no gradients of the tets behind.
     if (workspace.packed) prepare_stiffness(objective.model, state.position, workspace);
-    linear.assemble(objective, state.position, workspace);
+    linear.assemble(objective, state.position, state.time, workspace);
     report.products += linear.solve(f, forcing, most_products, deadline, p);
     ++report.newton;
     if (!line_search(objective, p, options.deadline.has_value(), workspace, f, state))

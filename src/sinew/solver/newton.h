@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "sinew/forces/workspace.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/constraints.h"
 #include "sinew/solver/deadline.h"
@@ -25,6 +26,7 @@ class LinearSolver;
 //   the energies of `constraints` for their multipliers as they are
 struct Objective {
   const Model& model;
+  const Controls& controls;
   const Field* dead_force = nullptr;  // [N]
   double share = 0.0;                 // [-]
   double inertia = 0.0;               // [1/s2]

@@ -9,11 +9,9 @@
 #include <optional>
 
 #include "sinew/base/parallel.h"
-#include "sinew/forces/obstacles.h"
 #include "sinew/forces/packed_stiffness.h"
 #include "sinew/forces/stiffness.h"
-#include "sinew/forces/tethers.h"
-#include "sinew/forces/ties.h"
+#include "sinew/forces/terms.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
@@ -32,12 +30,13 @@ void scale_nodes(const Model& model, Field& u) {  // u = M^-1/2 u
 // y = M^-1/2 (a K + b C) M^-1/2 u at positions x: by the packed forces where they can.
 class ScaledTangent {
  public:
-  ScaledTangent(const Model& model, const Field& x, Workspace& workspace)
+  ScaledTangent(const Model& model, const Controls& controls, const Field& x, Workspace& workspace)
       : model_(model),
+        controls_(controls),
         x_(x),
         workspace_(workspace),
         scratch_(x.size()),
-        packed_(PackedStiffness::at(model, x, workspace)) {
+        packed_(PackedStiffness::at(model, controls, x, workspace)) {
     if (!packed_) prepare_stiffness(model, x, workspace);
   }
   void times(double a, double b, const Field& u, Field& y) {
@@ -46,13 +45,15 @@ class ScaledTangent {
     if (packed_) {
       packed_->times(a, b, scratch_, y);
     } else {
-      stiffness_damping_times(model_, x_, a, b, scratch_, Tangent::only_stiffening, workspace_, y);
+      stiffness_damping_times({model_, controls_, x_}, a, b, scratch_, Tangent::only_stiffening,
+                              workspace_, y);
     }
     scale_nodes(model_, y);
   }
 
  private:
   const Model& model_;
+  const Controls& controls_;
   const Field& x_;
   Workspace& workspace_;
   Field scratch_;
@@ -179,20 +180,19 @@ std::vector<double> row_sums(const Model& model, const Field& x, const Workspace
 }
 
 // A step that is stable whatever the mesh: per node, the rows of K and C summed (Gershgorin).
-double guaranteed_step(const Model& model, const Field& x, const Workspace& workspace,
-                       Index& stiffest) {
+double guaranteed_step(const Model& model, const Controls& controls, const Field& x,
+                       const Workspace& workspace, Index& stiffest) {
   std::vector<double> rows = row_sums(model, x, workspace);
-  for_each_tethered(model, [&](Index node, double k, const Vec3&) { rows[uz(node)] += k; });
-  for_each_tie_pair(model, [&](Index i, Index j, double k) {
-    rows[uz(i)] += 2.0 * std::abs(k);
-    rows[uz(j)] += 2.0 * std::abs(k);
+  for_each_type(Terms{}, [&](auto term) {
+    if constexpr (!Bounded<decltype(term)>)
+      add_row_sums(term, {model, controls, x}, Tangent::only_stiffening, rows);
   });
   const std::vector<double> viscous_rows = viscous_row_sums(model, x);
   double h = std::numeric_limits<double>::infinity();
   double highest = 0.0;
   for (Index i = 0; i < model.node_count(); ++i) {
     const auto n = uz(i);
-    double k = rows[n] + largest_obstacle_stiffness(model, i);
+    double k = rows[n] + most_stiffness(model, i);
     double c = model.drag[n] * model.mass[n] + viscous_rows[n];
     for (Index e = model.spring_start[n]; e < model.spring_start[n + 1]; ++e) {
       const Index spring = model.node_spring[uz(e)] >> 1;
@@ -214,16 +214,17 @@ double guaranteed_step(const Model& model, const Field& x, const Workspace& work
 
 }  // namespace
 
-StableStep find_stable_step(const Model& model, const Field& x, Workspace& workspace) {
+StableStep find_stable_step(const Model& model, const Controls& controls, const Field& x,
+                            Workspace& workspace) {
   StableStep result;
   if (model.has_volume) compute_pressures(model, x, workspace);
-  double h = guaranteed_step(model, x, workspace, result.stiffest);
+  double h = guaranteed_step(model, controls, x, workspace, result.stiffest);
   result.step = h;
   if (!std::isfinite(h)) return result;
 
   Field u = scattered(model);
   Field y(u.size());
-  ScaledTangent tangent(model, x, workspace);
+  ScaledTangent tangent(model, controls, x, workspace);
   // The largest eigenvalue is a convex function of h, so after its first step Newton's method
   // comes from above and two or three steps do; without damping the first one is exact.
   for (int newton = 0; newton < 8; ++newton) {
@@ -249,9 +250,9 @@ StableStep find_stable_step(const Model& model, const Field& x, Workspace& works
   return result;
 }
 
-double watch_stable_step(const Model& model, const Field& x, double h, Field& mode,
-                         Workspace& workspace) {
-  ScaledTangent tangent(model, x, workspace);
+double watch_stable_step(const Model& model, const Controls& controls, const Field& x, double h,
+                         Field& mode, Workspace& workspace) {
+  ScaledTangent tangent(model, controls, x, workspace);
   Top top = lanczos([&](const Field& in, Field& out) { tangent.times(h * h, 2.0 * h, in, out); },
                     mode, 3);
   if (!(top.value > 0.0)) return h;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sinew/forces/workspace.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
@@ -23,14 +24,15 @@ struct StableStep {
 // is where the largest eigenvalue of M^-1 (h^2 K + 2 h C) reaches 4: found by Newton's method on h
 // with Lanczos inside, matrix-free, every estimate on the safe side by its residual.
 //
-StableStep find_stable_step(const Model& model, const std::vector<Vec3>& x, Workspace& workspace);
+StableStep find_stable_step(const Model& model, const Controls& controls,
+                            const std::vector<Vec3>& x, Workspace& workspace);
 
 // The same during a run, at the price of two steps in double precision or five in single: three
 // products of Lanczos that start from `mode`, the mode found before, with the step `h` now taken;
 // `mode` becomes the better one. Returns a stable step, which with damping may be shorter than the
 // largest. What three products cannot see is not in it: leave a margin.
-double watch_stable_step(const Model& model, const std::vector<Vec3>& x, double h,
-                         std::vector<Vec3>& mode, Workspace& workspace);
+double watch_stable_step(const Model& model, const Controls& controls, const std::vector<Vec3>& x,
+                         double h, std::vector<Vec3>& mode, Workspace& workspace);
 
 // "spring 12 (body beam, node 3 to body beam, node 4): k = ..., l0 = ..., c = ...".
 std::string describe_spring(const Model& model, Index spring);

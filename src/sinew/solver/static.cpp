@@ -22,7 +22,7 @@ constexpr double turn_per_load_step = 20.0 * 3.14159265358979 / 180.0;  // [rad]
 // state of one whose kappa is at most this many times mu: W(4) at nu = 0.499 takes 41 instead of 74
 // at 15 kPa, 19 instead of 23 at 1.5 MPa.
 constexpr double soft_volume = 30.0;
-constexpr int most_load_cuts = 12;           // a load step may become this often half as long
+constexpr int most_load_cuts = 12;      // a load step may become this often half as long
 constexpr int cuts_before_falling = 2;  // then the body is followed as it falls to rest, once
 
 // The largest angle [rad] that a pin turns by between two times.
@@ -51,6 +51,19 @@ double pins_turn(const Model& model, double from, double to) {
   return largest;
 }
 
+// Calls f(nodes) for everything that lies between nodes and is no part of one body's material:
+// attachments, distances, and the elements of the terms.
+template <typename F>
+void for_each_joint(const Model& model, const F& f) {
+  for (auto s = uz(model.first_attachment); s < model.springs.size(); ++s)
+    f(std::span<const Index>(model.springs[s]));
+  const Controls none;
+  for_each_type(Terms{}, [&](auto term) {
+    term.for_each_element({model, none, model.rest_position}, Tangent::full,
+                          [&](const Element& e) { f(e.nodes); });
+  });
+}
+
 // Bodies joined by attachments, distances and glue, as the first body of each group (bodies).
 std::vector<std::size_t> joined_bodies(const Model& model) {
   std::vector<std::size_t> group(model.bodies.size());
@@ -68,15 +81,14 @@ std::vector<std::size_t> joined_bodies(const Model& model) {
     const std::size_t high = std::max(group[a], group[b]);
     std::replace(group.begin(), group.end(), high, low);
   };
-  for (auto s = uz(model.first_attachment); s < model.springs.size(); ++s) {
-    join(model.springs[s][0], model.springs[s][1]);
-  }
-  for (const Tie& tie : model.ties) join(tie.node[0], tie.node[1]);
+  for_each_joint(model, [&](std::span<const Index> nodes) {
+    for (const Index node : nodes) join(nodes.front(), node);
+  });
   return group;
 }
 
-// The groups of joined bodies that no pin and no anchor holds (bodies; -1: held).
-std::vector<Index> unheld_groups(const Model& model) {
+// The groups of joined bodies that no pin, no anchor and no grab holds (bodies; -1: held).
+std::vector<Index> unheld_groups(const Model& model, const Controls& controls) {
   const std::vector<std::size_t> group = joined_bodies(model);
   std::vector<char> held(group.size(), 0);
   for (std::size_t b = 0; b < group.size(); ++b) {
@@ -84,15 +96,22 @@ std::vector<Index> unheld_groups(const Model& model) {
       if (model.inverse_mass[i] == 0.0) held[group[b]] = 1;
     }
   }
-  for (auto s = uz(model.first_attachment); s < model.springs.size(); ++s) {
-    for (const Index end : model.springs[s]) {
-      if (end < model.body_node_count()) continue;  // an anchor holds what the other end belongs to
-      const Index other = model.springs[s][0] == end ? model.springs[s][1] : model.springs[s][0];
-      for (std::size_t b = 0; b < group.size(); ++b) {
-        if (model.bodies[b].nodes.contains(other)) held[group[b]] = 1;
-      }
+  const auto hold = [&](Index node) {
+    for (std::size_t b = 0; b < group.size(); ++b) {
+      if (model.bodies[b].nodes.contains(node)) held[group[b]] = 1;
     }
-  }
+  };
+  for_each_joint(model, [&](std::span<const Index> nodes) {
+    // An anchor holds what the other nodes belong to.
+    if (*std::max_element(nodes.begin(), nodes.end()) < model.body_node_count()) return;
+    for (const Index node : nodes) hold(node);
+  });
+  for_each_type(Terms{}, [&](auto term) {
+    if constexpr (Holds<decltype(term)>) {
+      term.for_each_element({model, controls, model.rest_position}, Tangent::full,
+                            [&](const Element& e) { hold(e.nodes.front()); });
+    }
+  });
   std::vector<Index> unheld(group.size(), -1);
   for (std::size_t b = 0; b < group.size(); ++b) {
     if (held[group[b]] == 0) unheld[b] = static_cast<Index>(group[b]);
@@ -102,8 +121,8 @@ std::vector<Index> unheld_groups(const Model& model) {
 
 // A body that nothing holds rests only under forces that cancel each other, or that press it
 // straight against the ground.
-void refuse_unheld_bodies(const Model& model, const Field& force) {
-  const std::vector<Index> unheld = unheld_groups(model);
+void refuse_unheld_bodies(const Model& model, const Controls& controls, const Field& force) {
+  const std::vector<Index> unheld = unheld_groups(model, controls);
   std::vector<Vec3> net(unheld.size(), Vec3::Zero());
   std::vector<double> size(unheld.size(), 0.0);
   for (std::size_t b = 0; b < unheld.size(); ++b) {
@@ -130,8 +149,8 @@ void refuse_unheld_bodies(const Model& model, const Field& force) {
 }
 
 // Puts bodies that only the ground holds down on it, or lifts them onto it.
-void put_on_ground(const Model& model, State& state) {
-  const std::vector<Index> unheld = unheld_groups(model);
+void put_on_ground(const Model& model, const Controls& controls, State& state) {
+  const std::vector<Index> unheld = unheld_groups(model, controls);
   std::vector<double> lowest(unheld.size(), no_limit);
   const auto for_each = [&](const auto& f) {
     for (std::size_t b = 0; b < unheld.size(); ++b) {
@@ -149,11 +168,11 @@ void put_on_ground(const Model& model, State& state) {
 
 // What ties a body that only the ground holds to its place [1/s2]: see StaticSolver::settle. A
 // hundredth of the edge of a mean tet under the body's own weight.
-double nudge(const Model& model) {
+double nudge(const Model& model, const Controls& controls) {
   if (!model.ground) return 0.0;
-  const std::vector<Index> unheld = unheld_groups(model);
+  const std::vector<Index> unheld = unheld_groups(model, controls);
   if (std::all_of(unheld.begin(), unheld.end(), [](Index g) { return g < 0; })) return 0.0;
-  return 0.01 * model.gravity.norm() / mean_edge(model);
+  return 0.01 * controls.gravity.norm() / mean_edge(model);
 }
 
 }  // namespace
@@ -161,9 +180,8 @@ double nudge(const Model& model) {
 StaticSolver::StaticSolver(const Model& model)
     : model_(model),
       workspace_(model),
-      nudge_(nudge(model)),
       linear_(model),
-      constraints_(model, 10.0 * model.gravity.norm() / mean_edge(model), 0.0, false) {
+      constraints_(model, 10.0 * model.start_gravity.norm() / mean_edge(model), 0.0, false) {
   double stiffest = 0.0;
   for (std::size_t t = 0; t < model.tets.size(); ++t) {
     double bulk = model.tet_bulk[t];
@@ -183,18 +201,19 @@ StaticSolver::StaticSolver(const Model& model)
   }
 }
 
-int StaticSolver::solve_tangent(const std::vector<Vec3>& x, const std::vector<Vec3>& rhs,
-                                double tolerance, std::vector<Vec3>& u) {
+int StaticSolver::solve_tangent(const Configuration& at, const Field& rhs, double tolerance,
+                                Field& u) {
   double each = 1e-4;  // what single precision takes away in one go
   constexpr int most = 20000;
   Field r, p, q(u.size());
   double goal = 0.0;
   double before = no_limit;
   int products = 0;
+  const Field x(at.x.begin(), at.x.end());
   prepare_stiffness(model_, x, workspace_);
-  linear_.assemble(Objective{model_}, x, workspace_);
+  linear_.assemble(Objective{model_, at.controls}, x, at.time, workspace_);
   while (products < most) {
-    stiffness_damping_times(model_, x, 1.0, 0.0, u, Tangent::full, workspace_, q);
+    stiffness_damping_times(at, 1.0, 0.0, u, Tangent::full, workspace_, q);
     ++products;
     r = rhs;
     keep_free(model_, r);
@@ -225,7 +244,7 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
   constraints_.start(state, nullptr, 0.0);
   if (!constraints_.empty()) objective.constraints = &constraints_;
   objective.inertia = nudge_;
-  const Field outer = outer_forces(model_, state);
+  const Field outer = outer_forces(model_, objective.controls, state);
   const double goal = options.tolerance * std::sqrt(dot(outer, outer));
   NewtonReport report;
   for (;;) {
@@ -251,7 +270,8 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
 
 // Brings the pins to where they are at this share of the way between two times; the free nodes
 // follow as the tangent spreads their motion. Returns the Hessian products.
-int StaticSolver::move_pins_to(double start_time, double time, double share, State& state) {
+int StaticSolver::move_pins_to(const Controls& controls, double start_time, double time,
+                               double share, State& state) {
   Field move(state.position.size(), Vec3::Zero());
   for (const Pin& pin : model_.pins) {
     for (const Index node : pin.nodes) {
@@ -261,25 +281,28 @@ int StaticSolver::move_pins_to(double start_time, double time, double share, Sta
   }
   int products = 0;
   if (dot(move, move) > 0.0) {
-    products = solve_tangent(state.position, Field(move.size(), Vec3::Zero()), 1e-2, move);
+    products = solve_tangent(configuration(model_, controls, state),
+                             Field(move.size(), Vec3::Zero()), 1e-2, move);
   }
   add(state.position, 1.0, move);
   return products;
 }
 
-StaticReport StaticSolver::solve(double time, const StaticOptions& options, State& state) {
+StaticReport StaticSolver::solve(const Controls& controls, double time,
+                                 const StaticOptions& options, State& state) {
   StaticReport report;
   const double start_time = state.time;
+  nudge_ = nudge(model_, controls);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
   state.last_step = 0.0;
   state.time = time;  // of the loads; the pins follow below
-  refuse_unheld_bodies(model_, outer_forces(model_, state));
-  compute_forces(model_, state, workspace_);
+  refuse_unheld_bodies(model_, controls, outer_forces(model_, controls, state));
+  compute_forces(model_, controls, state, workspace_);
   if (find_tangled(model_, workspace_) > 0) {
     put_tangled_bodies_at_rest(model_, workspace_, state);
-    compute_forces(model_, state, workspace_);
+    compute_forces(model_, controls, state, workspace_);
   }
-  if (nudge_ > 0.0) put_on_ground(model_, state);
+  if (nudge_ > 0.0) put_on_ground(model_, controls, state);
 
   // The dead force makes the start of the solve a rest state, so that the way from there to the
   // goal can be cut into small steps.
@@ -295,7 +318,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
   while (done < 1.0) {
     const double next = done + length > 1.0 - 1e-9 ? 1.0 : done + length;
     const State before = state;
-    report.products += move_pins_to(start_time, time, next, state);
+    report.products += move_pins_to(controls, start_time, time, next, state);
     ++report.load_steps;
     const auto account = [&](const NewtonReport& r) {
       report.newton += r.newton;
@@ -308,7 +331,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
       return r.rests || r.stopped;
     };
     const auto newton = [&](const Model& model, double tolerance) {
-      const Objective objective{model, &dead_force, gradual ? 1.0 - next : 0.0};
+      const Objective objective{model, controls, &dead_force, gradual ? 1.0 - next : 0.0};
       NewtonOptions o{tolerance, options.max_newton, options.stop, {}};
       if (options.on_progress) {
         o.on_progress = [&, before_this = report.newton](const NewtonProgress& p) {
@@ -340,7 +363,7 @@ StaticReport StaticSolver::solve(double time, const StaticOptions& options, Stat
     state = before;
     if (cuts == cuts_before_falling && falls.newton == 0) {
       const StaticProgress now{report.load_steps, 1.0, report.newton, 0.0};
-      falls = fall_to_rest(start_time, time, options, now, state);
+      falls = fall_to_rest(controls, start_time, time, options, now, state);
       if (account(falls)) break;
     }
     state = before;

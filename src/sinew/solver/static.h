@@ -6,7 +6,9 @@
 #include <functional>
 #include <memory>
 
+#include "sinew/forces/term.h"
 #include "sinew/forces/workspace.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/linear_solver.h"
 
@@ -61,25 +63,27 @@ class StaticSolver {
   // after two cuts the body is followed, once, as it falls to rest.
   // Throws Error(input) where a body has nothing to hold it against the forces on it, and
   // Error(diverged) where no rest state is found.
-  StaticReport solve(double time, const StaticOptions& options, State& state);
+  StaticReport solve(const Controls& controls, double time, const StaticOptions& options,
+                     State& state);
 
-  // Solves K u = rhs for the free nodes with the tangent at positions x by conjugate gradients, to
+  // Solves K u = rhs for the free nodes with the tangent there by conjugate gradients, to
   // |K u - rhs| <= tolerance |rhs|; u of the others is kept as given and acts as a prescribed
   // displacement. Returns the products taken.
-  int solve_tangent(const std::vector<Vec3>& x, const std::vector<Vec3>& rhs, double tolerance,
+  int solve_tangent(const Configuration& at, const std::vector<Vec3>& rhs, double tolerance,
                     std::vector<Vec3>& u);
 
   Workspace& workspace() { return workspace_; }
 
  private:
-  NewtonReport fall_to_rest(double start_time, double time, const StaticOptions& options,
-                            StaticProgress progress, State& state);
-  int move_pins_to(double start_time, double time, double share, State& state);
+  NewtonReport fall_to_rest(const Controls& controls, double start_time, double time,
+                            const StaticOptions& options, StaticProgress progress, State& state);
+  int move_pins_to(const Controls& controls, double start_time, double time, double share,
+                   State& state);
   NewtonReport settle(Objective objective, const NewtonOptions& options, State& state);
 
   const Model& model_;
   Workspace workspace_;
-  double nudge_;  // see settle() [1/s2]; 0 where no body rests on the ground alone
+  double nudge_ = 0.0;  // see settle() [1/s2]; 0 where no body rests on the ground alone
   LinearSolver linear_;
   Constraints constraints_;
   std::unique_ptr<Model> softened_;  // with less stiff volume, where that helps; else none

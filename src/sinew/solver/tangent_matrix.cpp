@@ -4,24 +4,14 @@
 #include <algorithm>
 
 #include "sinew/base/sort_by_key.h"
-#include "sinew/forces/obstacles.h"
 #include "sinew/forces/spring_law.h"
-#include "sinew/forces/tethers.h"
-#include "sinew/forces/ties.h"
+#include "sinew/forces/terms.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
 
 namespace sinew {
 namespace {
-
-// The pairs of a tet's corners, each with the other two in the order that makes all four an even
-// permutation; then d2v/dx_a dx_b = -[x_d - x_c]_x / 6.
-struct Pair {
-  std::size_t a, b, c, d;
-};
-constexpr std::array<Pair, 6> tet_pairs = {
-    {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
 
 bool acts(const Model& model, std::size_t s) {
   return model.stiffness[s] > 0.0 || model.damping[s] > 0.0 || model.stretch_limit[s] < no_limit ||
@@ -86,7 +76,7 @@ TangentMatrix::TangentMatrix(const Model& model) : model_(model) {
 
 void TangentMatrix::find_edges() {
   for (const Tet& tet : model_.tets) {
-    for (const Pair& p : tet_pairs) edges_.push_back(sorted(tet[p.a], tet[p.b]));
+    for (const CornerPair& p : corner_pairs) edges_.push_back(sorted(tet[p.a], tet[p.b]));
   }
   for (std::size_t s = 0; s < model_.springs.size(); ++s) {
     if (acts(model_, s)) edges_.push_back(sorted(model_.springs[s][0], model_.springs[s][1]));
@@ -104,7 +94,7 @@ void TangentMatrix::find_edges() {
   std::vector<Index> of_pair, pairs;
   of_pair.reserve(6 * model_.tets.size());
   for (const Tet& tet : model_.tets) {
-    for (const Pair& p : tet_pairs) of_pair.push_back(edge_of(tet[p.a], tet[p.b]));
+    for (const CornerPair& p : corner_pairs) of_pair.push_back(edge_of(tet[p.a], tet[p.b]));
   }
   sort_by_key(
       edges_.size(), static_cast<Index>(of_pair.size()), [&](Index i) { return of_pair[uz(i)]; },
@@ -112,7 +102,7 @@ void TangentMatrix::find_edges() {
   edge_tets_.reserve(pairs.size());
   for (const Index k : pairs) {
     const Tet& tet = model_.tets[uz(k / 6)];
-    const Pair& p = tet_pairs[uz(k % 6)];
+    const CornerPair& p = corner_pairs[uz(k % 6)];
     const bool even = tet[p.a] < tet[p.b];
     edge_tets_.push_back({k / 6, tet[even ? p.c : p.d], tet[even ? p.d : p.c]});
   }
@@ -168,10 +158,20 @@ void TangentMatrix::find_far_neighbours() {
   edge_network_.assign(edges_.size(), 0.0);
   far_start_.assign(free_.size() + 1, 0);
   far_sum_.resize(free_.size());
-  std::vector<std::vector<std::pair<Index, double>>> tied(model_.ties.empty() ? 0 : free_.size());
-  for_each_tie_pair(model_, [&](Index i, Index j, double k) {
-    tied[uz(i)].emplace_back(j, k);
-    tied[uz(j)].emplace_back(i, k);
+  std::vector<std::vector<std::pair<Index, double>>> tied;
+  const Controls none;
+  for_each_type(Terms{}, [&](auto term) {
+    if constexpr (term.isotropic) {
+      term.for_each_element({model_, none, model_.rest_position}, Tangent::full,
+                            [&](const Element& e) {
+                              for_each_pair(e, [&](Index i, Index j, double w_i, double w_j) {
+                                const double k = -e.block(0, 0) * w_i * w_j;
+                                tied.resize(free_.size());
+                                tied[uz(i)].emplace_back(j, k);
+                                tied[uz(j)].emplace_back(i, k);
+                              });
+                            });
+    }
   });
   for (std::size_t i = 0; i < free_.size(); ++i) {
     const bool has_network = !model_.network_start.empty();
@@ -374,45 +374,62 @@ void TangentMatrix::assemble_cells(const Objective& objective, const Workspace& 
   });
 }
 
-void TangentMatrix::assemble_contacts(const Objective& objective) {
-  contacts_.clear();
-  contact_block_.clear();
-  if (objective.constraints == nullptr) return;
-  for (const auto& tangent : objective.constraints->touching().tangents()) {
-    Touching touching;
-    touching.block = Block3(tangent.block);
-    if (contact_block_.empty()) contact_block_.assign(free_.size(), Mat3::Zero());
-    for (std::size_t a = 0; a < static_cast<std::size_t>(tangent.contact->count); ++a) {
-      const Index node = tangent.contact->node[a];
-      const double weight = tangent.contact->weight[a];
-      if (free_[uz(node)] == 0) continue;
-      touching.node[static_cast<std::size_t>(touching.count)] = node;
-      touching.weight[static_cast<std::size_t>(touching.count)] = static_cast<float>(weight);
-      ++touching.count;
-      contact_block_[uz(node)] += weight * weight * tangent.block;
-    }
-    contacts_.push_back(touching);
+void TangentMatrix::add_joint(std::span<const Index> nodes, std::span<const double> weights,
+                              const Mat3& block) {
+  Joint joint{{static_cast<Index>(joint_node_.size()), 0}, Block3(block)};
+  if (joint_diagonal_.empty()) joint_diagonal_.assign(free_.size(), Mat3::Zero());
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    if (free_[uz(nodes[a])] == 0) continue;
+    joint_node_.push_back(nodes[a]);
+    joint_weight_.push_back(static_cast<float>(weights[a]));
+    joint_diagonal_[uz(nodes[a])] += weights[a] * weights[a] * block;
   }
+  joint.parts.end = static_cast<Index>(joint_node_.size());
+  joints_.push_back(joint);
+}
+
+// Contacts and the terms' elements; those of isotropic terms between nodes are among the far
+// neighbours.
+void TangentMatrix::assemble_joints(const Objective& objective, const Field& x, double time) {
+  joints_.clear();
+  joint_node_.clear();
+  joint_weight_.clear();
+  joint_diagonal_.clear();
+  pull_.clear();
+  if (objective.constraints != nullptr) {
+    for (const auto& tangent : objective.constraints->touching().tangents()) {
+      const auto count = static_cast<std::size_t>(tangent.contact->count);
+      add_joint(std::span(tangent.contact->node).first(count),
+                std::span(tangent.contact->weight).first(count), tangent.block);
+    }
+  }
+  const Configuration at{objective.model, objective.controls, x, time};
+  for_each_type(Terms{}, [&](auto term) {
+    term.for_each_element(at, Tangent::full, [&](const Element& e) {
+      if (e.nodes.size() == 1) {
+        if (pull_.empty()) pull_.assign(free_.size(), Mat3::Zero());
+        pull_[uz(e.nodes[0])] += e.weights[0] * e.weights[0] * e.block;
+      } else if (!term.isotropic) {
+        add_joint(e.nodes, e.weights, e.block);
+      }
+    });
+  });
 }
 
 // D, and the inverse of the diagonal.
-void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
-                                   const Workspace& workspace) {
+void TangentMatrix::assemble_nodes(const Objective& objective) {
   const Model& model = objective.model;
-  std::vector<double> tether(model.tethers.empty() ? 0 : free_.size(), 0.0);
-  for_each_tethered(model, [&](Index node, double k, const Vec3&) { tether[uz(node)] += k; });
   parallel_for(model.node_count(), [&](Index i) {
     const auto n = uz(i);
     if (free_[n] == 0) return;
-    const double weight = (tether.empty() ? 0.0 : tether[n]) +
-                          (objective.inertia + objective.rate * model.drag[n]) * model.mass[n];
+    const double weight = (objective.inertia + objective.rate * model.drag[n]) * model.mass[n];
     Mat3 own = weight * Mat3::Identity();
-    add_obstacle_stiffness(model, x[n], workspace.obstacle_center, i, own);
+    if (!pull_.empty()) own += pull_[n];
     if (objective.constraints != nullptr && n < objective.constraints->node_blocks().size()) {
       own += objective.constraints->node_blocks()[n];
     }
     own_block_[n] = Block3(own);
-    if (!contact_block_.empty()) own += contact_block_[n];
+    if (!joint_diagonal_.empty()) own += joint_diagonal_[n];
     own.diagonal().array() += static_cast<double>(far_sum_[n]);
     Block3 sum(own);
     for (auto e = uz(near_start_[n]); e < uz(near_start_[n + 1]); ++e) {
@@ -429,12 +446,12 @@ void TangentMatrix::assemble_nodes(const Objective& objective, const Field& x,
   });
 }
 
-void TangentMatrix::assemble(const Objective& objective, const Field& x,
+void TangentMatrix::assemble(const Objective& objective, const Field& x, double time,
                              const Workspace& workspace) {
   if (objective.model.has_volume) assemble_cells(objective, workspace);
   assemble_edges(objective, x, workspace);
-  assemble_contacts(objective);
-  assemble_nodes(objective, x, workspace);
+  assemble_joints(objective, x, time);
+  assemble_nodes(objective);
 }
 
 TangentRows TangentMatrix::rows() const {
@@ -463,15 +480,13 @@ double TangentMatrix::times(const Field4& u, Field4& out) const {
       model_.node_count(), 0.0,
       [&](Range r) { return tangent_nodes(m, u.data(), cell_push_.data(), r, out.data()); },
       [](double a, double b) { return a + b; });
-  for (const Touching& t : contacts_) {
+  for (const Joint& joint : joints_) {
     Float4 place;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(t.count); ++a) {
-      place += t.weight[a] * u[uz(t.node[a])];
-    }
-    const Float4 push = t.block * place;
-    for (std::size_t a = 0; a < static_cast<std::size_t>(t.count); ++a) {
-      out[uz(t.node[a])] += t.weight[a] * push;
-    }
+    for (auto k = uz(joint.parts.begin); k < uz(joint.parts.end); ++k)
+      place += joint_weight_[k] * u[uz(joint_node_[k])];
+    const Float4 push = joint.block * place;
+    for (auto k = uz(joint.parts.begin); k < uz(joint.parts.end); ++k)
+      out[uz(joint_node_[k])] += joint_weight_[k] * push;
     sum += static_cast<double>(place.dot(push));
   }
   return sum;

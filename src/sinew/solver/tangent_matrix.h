@@ -18,10 +18,10 @@ namespace sinew {
 //   (K u)_i = D_i u_i + sum_j B_ij (u_i - u_j) + sum_j k_ij (u_i - u_j)
 //             + sum_c G_ci (kappa_c / V_c) sum_j G_cj . u_j + sum_p w_pi T_p sum_j w_pj u_j
 //
-// D: inertia, drag, obstacles. B: springs, dashpots, network and what a tet does between the nodes
-// of its edges. k: the network between nodes that share no edge. G_c: the gradient of a cell's
-// volume. T_p, w_p: block and weights of a contact. Differences of u, so that moving all nodes
-// alike feels none of the rounding of B.
+// D: inertia, drag, elements of terms at one node. B: springs, dashpots, network and what a tet
+// does between the nodes of its edges. k: the network between nodes that share no edge. G_c: the
+// gradient of a cell's volume. T_p, w_p: block and weights of a contact or of a term's element
+// between nodes. Differences of u, so that moving all nodes alike feels none of the rounding of B.
 //
 // In single precision: a Newton direction needs few digits, and half the bytes are half the time.
 // The force that Newton's method brings to zero is in double precision.
@@ -29,9 +29,10 @@ class TangentMatrix {
  public:
   explicit TangentMatrix(const Model& model);  // which entries there are
 
-  // Their values at positions x for objective.model: the constructor's, or one that differs from it
-  // in stiffness only. Expects what prepare_stiffness leaves in the workspace at x.
-  void assemble(const Objective& objective, const Field& x, const Workspace& workspace);
+  // Their values at positions x and `time` for objective.model: the constructor's, or one that
+  // differs from it in stiffness only. Expects what prepare_stiffness leaves in the workspace at x.
+  void assemble(const Objective& objective, const Field& x, double time,
+                const Workspace& workspace);
 
   // out = K u (nodes), 0 where the motion is given; u has to be 0 there. Returns u . K u.
   double times(const Field4& u, Field4& out) const;
@@ -70,8 +71,9 @@ class TangentMatrix {
   Mat3 rare_block(const Objective& objective, const Field& x, const Workspace& workspace,
                   std::size_t edge) const;
   void assemble_cells(const Objective& objective, const Workspace& workspace);
-  void assemble_contacts(const Objective& objective);
-  void assemble_nodes(const Objective& objective, const Field& x, const Workspace& workspace);
+  void assemble_joints(const Objective& objective, const Field& x, double time);
+  void add_joint(std::span<const Index> nodes, std::span<const double> weights, const Mat3& block);
+  void assemble_nodes(const Objective& objective);
 
   const Model& model_;
 
@@ -104,15 +106,16 @@ class TangentMatrix {
   std::vector<Block3> own_block_;         // D_i [N/m] (nodes)
   std::vector<Block3> inverse_diagonal_;  // [m/N] (nodes)
 
-  // Contacts: sum_ab weight_a weight_b block between their nodes.
-  struct Touching {
-    int count = 0;
-    std::array<Index, 4> node = {};  // that move
-    std::array<float, 4> weight = {};
+  // Contacts, and elements of terms between nodes: sum_ab weight_a weight_b block.
+  struct Joint {
+    Range parts;   // of joint_node_ and joint_weight_, nodes that move
     Block3 block;  // [N/m]
   };
-  std::vector<Touching> contacts_;
-  std::vector<Mat3> contact_block_;  // what they add to the diagonal [N/m] (nodes); empty: nothing
+  std::vector<Joint> joints_;
+  std::vector<Index> joint_node_;
+  std::vector<float> joint_weight_;
+  std::vector<Mat3> joint_diagonal_;  // what they add to the diagonal [N/m] (nodes); empty: nothing
+  std::vector<Mat3> pull_;            // what elements of one node add [N/m] (nodes); empty: nothing
 
   // Cells.
   std::vector<Index> cell_start_, cell_node_;  // nodes of its tets (cells + 1)
@@ -143,6 +146,16 @@ void TangentMatrix::for_each_block(const F& f) const {
       if (free_[uz(far_[e])] != 0) f(i, far_[e], Mat3(-k));
     }
     f(i, i, own);
+  }
+  for (const Joint& joint : joints_) {
+    const Mat3 block = joint.block.mat3();
+    for (auto a = uz(joint.parts.begin); a < uz(joint.parts.end); ++a) {
+      for (auto b = uz(joint.parts.begin); b < uz(joint.parts.end); ++b) {
+        const double weight =
+            static_cast<double>(joint_weight_[a]) * static_cast<double>(joint_weight_[b]);
+        f(joint_node_[a], joint_node_[b], Mat3(weight * block));
+      }
+    }
   }
 }
 

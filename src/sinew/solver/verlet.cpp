@@ -165,13 +165,14 @@ Index suspect_spring(const Model& model, const Workspace& workspace, Index node)
 
 }  // namespace
 
-VerletReport verlet_step(const Model& model, double h, State& state, Workspace& workspace) {
+VerletReport verlet_step(const Model& model, const Controls& controls, double h, State& state,
+                         Workspace& workspace) {
   VerletReport report;
-  state.energy.dissipated += h * compute_forces(model, state, workspace);
+  state.energy.dissipated += h * compute_forces(model, controls, state, workspace);
   double energy = 0.0;
   report.righted = find_tangled(model, workspace);
   if (report.righted > 0) {
-    energy = measure_energies(model, state, workspace).total();
+    energy = measure_energies(model, controls, state, workspace).total();
     right_tangled_bodies(model, state, h, workspace);
   }
   const bool contacts = ExplicitContacts::any(model);
@@ -194,7 +195,7 @@ VerletReport verlet_step(const Model& model, double h, State& state, Workspace& 
   state.time += h;
   ++state.step;
   if (report.righted > 0) {
-    state.energy.work_in += measure_energies(model, state, workspace).total() - energy;
+    state.energy.work_in += measure_energies(model, controls, state, workspace).total() - energy;
   }
   if (broken != none) report_divergence(model, state, broken, workspace);
   return report;

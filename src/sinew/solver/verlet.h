@@ -3,6 +3,7 @@
 
 #include "sinew/contact/respond.h"
 #include "sinew/forces/workspace.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
@@ -28,6 +29,7 @@ struct VerletReport {
 //
 // Throws Error(diverged) when a position is not finite any more or beyond 1e9 m, and names body,
 // node, spring and time; the state is then the broken one.
-VerletReport verlet_step(const Model& model, double h, State& state, Workspace& workspace);
+VerletReport verlet_step(const Model& model, const Controls& controls, double h, State& state,
+                         Workspace& workspace);
 
 }  // namespace sinew

@@ -48,16 +48,14 @@ std::shared_ptr<PackedForces> packed_of(const Model& model, Precision precision)
 // A body in motion: forces differ from node to node, as in a run.
 State moved(const Model& model, double h, Workspace& workspace) {
   State s = initial_state(model);
-  for (int i = 0; i < steps_before; ++i) verlet_step(model, h, s, workspace);
+  for (int i = 0; i < steps_before; ++i)
+    verlet_step(model, initial_controls(model), h, s, workspace);
   return s;
 }
 
 double half_stable_step(const Model& model, Workspace& workspace) {
-  return 0.5 * find_stable_step(model, model.rest_position, workspace).step;
-}
-
-const char* word_of(Precision p) {
-  return p == Precision::single ? "single" : "double";
+  return 0.5 *
+         find_stable_step(model, initial_controls(model), model.rest_position, workspace).step;
 }
 
 bool is_explicit(Kernel k) {
@@ -95,7 +93,7 @@ std::string BenchCase::name() const {
 }
 
 std::string BenchCase::precision_name() const {
-  if (is_explicit(kernel)) return word_of(precision);
+  if (is_explicit(kernel)) return std::string(word_of(precision));
   return kernel == Kernel::product || kernel == Kernel::iteration ? "single" : "";
 }
 
@@ -210,11 +208,12 @@ std::optional<Timing> BenchSubject::step(const BenchCase& what, const TimerOptio
   row.hash = hex(start.hash());
   row.work = step_work(m, what.precision);
   row.steps = 1;
+  const Controls controls = initial_controls(m);
   TimerOptions longer = options;
   longer.shortest *= 10.0;  // so that the steps' own caches are warm after the start is restored
   State s;
   return measure(
-      longer, [&] { s = start; }, [&] { verlet_step(m, h, s, workspace); });
+      longer, [&] { s = start; }, [&] { verlet_step(m, controls, h, s, workspace); });
 }
 
 std::optional<Timing> BenchSubject::forces(const BenchCase& what, const TimerOptions& options,
@@ -259,14 +258,15 @@ std::optional<Timing> BenchSubject::frame(const BenchCase& what, const TimerOpti
   const Scene run_scene = scene(set);
   RunState start;
   start.state = initial_state(m);
-  Stepping stepping(run_scene, m, start);
+  const Controls controls = initial_controls(m);
+  Stepping stepping(run_scene, m, controls, start);
   // The first frames of a fall are easy for Newton's method: the fourth represents the others.
-  for (int i = 0; implicit && i < 3; ++i) stepping.advance_frame(start, options.stop);
+  for (int i = 0; implicit && i < 3; ++i) stepping.advance_frame(controls, start, options.stop);
   TimerOptions single = options;
   single.most_in_batch = 1;
   RunState s;
   const auto time = measure(
-      single, [&] { s = start; }, [&] { stepping.advance_frame(s, options.stop); });
+      single, [&] { s = start; }, [&] { stepping.advance_frame(controls, s, options.stop); });
   row.hash = hex(s.state.hash());
   row.steps = s.work.steps;
   row.newton_steps = s.work.newton_steps;
@@ -284,12 +284,14 @@ std::optional<Timing> BenchSubject::linear(const BenchCase& what, const TimerOpt
   const Model& m = *model_;
   Workspace workspace(m);
   const Field& x = m.rest_position;
-  const Objective objective{.model = m, .inertia = 1.0 / (frame_seconds * frame_seconds)};
+  const Controls controls = initial_controls(m);
+  const Objective objective{
+      .model = m, .controls = controls, .inertia = 1.0 / (frame_seconds * frame_seconds)};
   prepare_stiffness(m, x, workspace);
-  Field load = outer_forces(m, initial_state(m));
+  Field load = outer_forces(m, controls, initial_state(m));
   if (what.kernel == Kernel::iteration) {
     LinearSolver solver(m);
-    solver.assemble(objective, x, workspace);
+    solver.assemble(objective, x, 0.0, workspace);
     Field p;
     const auto solve = [&] { row.products = solver.solve(load, residual, 1000, {}, p); };
     const auto time = measure(
@@ -300,10 +302,10 @@ std::optional<Timing> BenchSubject::linear(const BenchCase& what, const TimerOpt
     return time;
   }
   TangentMatrix matrix(m);
-  matrix.assemble(objective, x, workspace);
+  matrix.assemble(objective, x, 0.0, workspace);
   if (what.kernel == Kernel::assembly) {
     return measure(
-        options, [] {}, [&] { matrix.assemble(objective, x, workspace); });
+        options, [] {}, [&] { matrix.assemble(objective, x, 0.0, workspace); });
   }
   Field4 u(load.size()), out(load.size());
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = Float4(load[i]);

@@ -4,10 +4,10 @@
 #include <chrono>
 #include <cmath>
 
+#include "sinew/solver/deadline.h"
+
 namespace sinew::study {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr int fewest = 5;
 

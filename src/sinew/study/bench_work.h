@@ -3,11 +3,10 @@
 #pragma once
 
 #include "sinew/model/model.h"
+#include "sinew/solver/stepper_kind.h"
 #include "sinew/study/bench_machine.h"
 
 namespace sinew::study {
-
-enum class Precision { single, double_ };
 
 // Bytes: every array that a pass over the model reads or writes, once for each pass, as if repeated
 // accesses within a pass hit registers or the nearest cache. Flops: additions, multiplications,

@@ -57,9 +57,10 @@ Experiment::Experiment(const Scene& scene) : scene_(scene), model_(build_model(s
 
 bool Experiment::run(const std::atomic<bool>* stop, const std::function<void(double)>& on_share) {
   const auto start = std::chrono::steady_clock::now();
-  Stepping stepping(scene_, model_, run_);
+  const Controls controls = initial_controls(model_);
+  Stepping stepping(scene_, model_, controls, run_);
   while (run_.frame < stepping.frame_count()) {
-    if (!stepping.advance_frame(run_, stop)) return false;
+    if (!stepping.advance_frame(controls, run_, stop)) return false;
     const std::vector<ProbeReading> readings = probes();
     for (std::size_t p = 0; p < readings.size(); ++p)
       lowest_[p] = lowest_[p].cwiseMin(readings[p].displacement);
@@ -67,7 +68,7 @@ bool Experiment::run(const std::atomic<bool>* stop, const std::function<void(dou
     if (on_share) on_share(run_.state.time / scene_.duration);
     if (stop != nullptr && stop->load() && run_.frame < stepping.frame_count()) return false;
   }
-  compute_forces(model_, run_.state, stepping.workspace());
+  compute_forces(model_, controls, run_.state, stepping.workspace());
   force_ = stepping.workspace().force;
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return true;

@@ -1,8 +1,8 @@
-#include "sinew/live/carry_over.h"
+#include "sinew/sim/carry_over.h"
 
 #include <cmath>
 
-namespace sinew::live {
+namespace sinew {
 namespace {
 
 double mean_modulus(const Model& model, const Body& body) {
@@ -63,4 +63,4 @@ void calm_softened_bodies(const Model& before, const Model& after, State& state)
   }
 }
 
-}  // namespace sinew::live
+}  // namespace sinew

@@ -3,7 +3,7 @@
 
 #include "sinew/model/state.h"
 
-namespace sinew::live {
+namespace sinew {
 
 // Takes from every body that becomes softer, by a ratio r < 1 of its mean shear modulus, the share
 // sqrt(r) of the speeds at which it deforms; how it moves and turns as a whole stays. A deformed
@@ -11,4 +11,4 @@ namespace sinew::live {
 // would be torn apart by it: this way its swings keep their size. Models with the same nodes.
 void calm_softened_bodies(const Model& before, const Model& after, State& state);
 
-}  // namespace sinew::live
+}  // namespace sinew

@@ -1,4 +1,4 @@
-#include "sinew/forces/tethers.h"
+#include "sinew/forces/grabs.h"
 
 #include <gtest/gtest.h>
 
@@ -10,30 +10,35 @@
 namespace sinew {
 namespace {
 
-Model tethered_box() {
+Model held_box() {
   Model m = test::tissue_box({}, {2, 2, 2});
   m.pins.push_back({"base", test::nodes_at(m, 1, -0.05), {}});
   finish(m);
-  m.gravity = Vec3::Zero();
-  Tether tether{{1, 13, 26}, {5.0, 20.0, 7.0}, {}, Vec3(0.1, 0.2, -0.1)};
-  for (const Index node : tether.nodes) tether.offset.push_back(0.5 * m.rest_position[uz(node)]);
-  m.tethers.push_back(tether);
+  m.start_gravity = Vec3::Zero();
   return m;
 }
 
-TEST(Tethers, VerletAndImplicitStepsCarryABodyToTheSameRest) {
+// Gravity stays off.
+Controls grabbing_hand(const Model& m) {
+  Grab grab{{1, 13, 26}, {5.0, 20.0, 7.0}, {}, Vec3(0.1, 0.2, -0.1)};
+  for (const Index node : grab.nodes) grab.offset.push_back(0.5 * m.rest_position[uz(node)]);
+  return {m.start_gravity, {grab}};
+}
+
+TEST(Grabs, VerletAndImplicitStepsCarryABodyToTheSameRest) {
   if (test::sanitized) return;  // thousands of steps of what the live view's tests run, too
-  const Model m = tethered_box();
+  const Model m = held_box();
+  const Controls controls = grabbing_hand(m);
   const auto settled = [&](bool implicit) {
     State state = initial_state(m);
     if (implicit) {
       ImplicitStepper stepper(m);
       ImplicitOptions options;
       options.scheme = Scheme::backward_euler;
-      for (int i = 0; i < 200; ++i) stepper.step(0.05, options, state);
+      for (int i = 0; i < 200; ++i) stepper.step(0.05, controls, options, state);
     } else {
       Workspace workspace(m);
-      for (int i = 0; i < 12000; ++i) verlet_step(m, 1e-3, state, workspace);
+      for (int i = 0; i < 12000; ++i) verlet_step(m, controls, 1e-3, state, workspace);
     }
     return state;
   };
@@ -44,7 +49,7 @@ TEST(Tethers, VerletAndImplicitStepsCarryABodyToTheSameRest) {
   }
   // It moved, and is held back.
   EXPECT_GT((b.position[26] - m.rest_position[26]).norm(), 1e-3);
-  EXPECT_GT(tether_pull(m, m.tethers[0], b.position).norm(), 0.1);
+  EXPECT_GT(grab_pull(m, controls.grabs[0], b.position).norm(), 0.1);
 }
 
 }  // namespace

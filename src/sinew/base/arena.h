@@ -1,0 +1,29 @@
+// Threads of its own for the loops of base/parallel.h, beside those of others in the same process.
+#pragma once
+
+#include <tbb/task_arena.h>
+
+#include <memory>
+
+namespace sinew {
+
+class Arena {
+ public:
+  // At most `threads` threads run the loops of what run() is given, the calling one among them. 0:
+  // the arena of the calling thread, whatever it is.
+  explicit Arena(int threads)
+      : arena_(threads > 0 ? std::make_unique<tbb::task_arena>(threads) : nullptr) {}
+
+  template <typename F>
+  void run(const F& f) {
+    if (arena_)
+      arena_->execute(f);
+    else
+      f();
+  }
+
+ private:
+  std::unique_ptr<tbb::task_arena> arena_;
+};
+
+}  // namespace sinew

@@ -1,0 +1,111 @@
+// What turns motion into heat, each alone and in plain words: f = -C(x) v with C symmetric and
+// positive semidefinite. What tests hold the fused loops of a step against, as those of
+// forces/material_terms.h.
+#pragma once
+
+#include <array>
+#include <concepts>
+
+#include "sinew/forces/spring_law.h"
+#include "sinew/forces/term.h"
+#include "sinew/forces/viscosity.h"
+
+namespace sinew {
+
+//   power(at, v)          v . C v [W], v of all nodes [m/s]
+//   add_forces(at, v, f)  f -= C v [N] (nodes)
+// and the parts of C, as those of a tangent: elements, or blocks visit(i, j, C_ij).
+template <class T>
+concept DampingTerm = requires(const Configuration& at, std::span<const Vec3> v,
+                               std::span<Vec3> forces) {
+  { T::power(at, v) } -> std::same_as<double>;
+  { T::add_forces(at, v, forces) } -> std::same_as<void>;
+  T::for_each_block(at, [](Index, Index, const Mat3&) {});
+};
+
+struct DashpotTerm {
+  static double power(const Configuration& at, std::span<const Vec3> v) {
+    double sum = 0.0;
+    for_each_pull(at, v, [&](const Edge&, const SpringPull& pull) { sum += pull.heat; });
+    return sum;
+  }
+  static void add_forces(const Configuration& at, std::span<const Vec3> v, std::span<Vec3> forces) {
+    for_each_pull(at, v, [&](const Edge& ends, const SpringPull& pull) {
+      forces[uz(ends[0])] += pull.force;
+      forces[uz(ends[1])] -= pull.force;
+    });
+  }
+  template <class F>
+  static void for_each_block(const Configuration& at, const F& visit) {
+    for (std::size_t s = 0; s < at.model.springs.size(); ++s) {
+      const auto [i, j] = at.model.springs[s];
+      const Mat3 block = dashpot_block(at.x[uz(j)] - at.x[uz(i)], at.model.damping[s]);
+      visit(i, i, block);
+      visit(j, j, block);
+      visit(i, j, Mat3(-block));
+      visit(j, i, Mat3(-block));
+    }
+  }
+
+ private:
+  template <class F>
+  static void for_each_pull(const Configuration& at, std::span<const Vec3> v, const F& f) {
+    for (std::size_t s = 0; s < at.model.springs.size(); ++s) {
+      const Edge& ends = at.model.springs[s];
+      f(ends, dashpot_pull(at.x[uz(ends[1])] - at.x[uz(ends[0])], v[uz(ends[1])] - v[uz(ends[0])],
+                           at.model.damping[s]));
+    }
+  }
+};
+
+struct ViscosityTerm {
+  static double power(const Configuration& at, std::span<const Vec3> v) {
+    return viscous_power(at.model, at.x, v);
+  }
+  static void add_forces(const Configuration& at, std::span<const Vec3> v, std::span<Vec3> forces) {
+    for_each_block(at,
+                   [&](Index i, Index j, const Mat3& block) { forces[uz(i)] -= block * v[uz(j)]; });
+  }
+  template <class F>
+  static void for_each_block(const Configuration& at, const F& visit) {
+    const Model& m = at.model;
+    for (Index cell = 0; cell < m.viscous_cell_count(); ++cell) {
+      const Mat3 F_cell = viscous_deformation(m, at.x, cell);
+      const auto end = uz(m.viscous_cell[uz(cell) + 1]);
+      for (auto a = uz(m.viscous_cell[uz(cell)]); a < end; ++a) {
+        for (auto b = uz(m.viscous_cell[uz(cell)]); b < end; ++b) {
+          visit(m.viscous_node[a], m.viscous_node[b],
+                viscous_block(F_cell, m.viscous_gradient[a], m.viscous_gradient[b],
+                              m.viscous_weight[uz(cell)]));
+        }
+      }
+    }
+  }
+};
+
+struct DragTerm {
+  static double power(const Configuration& at, std::span<const Vec3> v) {
+    double sum = 0.0;
+    for (Index i = 0; i < at.model.node_count(); ++i)
+      sum += coefficient(at.model, i) * v[uz(i)].squaredNorm();
+    return sum;
+  }
+  static void add_forces(const Configuration& at, std::span<const Vec3> v, std::span<Vec3> forces) {
+    for (Index i = 0; i < at.model.node_count(); ++i)
+      forces[uz(i)] -= coefficient(at.model, i) * v[uz(i)];
+  }
+  template <class F>
+  static void for_each_block(const Configuration& at, const F& visit) {
+    for (Index i = 0; i < at.model.node_count(); ++i)
+      visit(i, i, Mat3(coefficient(at.model, i) * Mat3::Identity()));
+  }
+
+ private:
+  static double coefficient(const Model& model, Index i) {
+    return model.inverse_mass[uz(i)] > 0.0 ? model.drag[uz(i)] * model.mass[uz(i)] : 0.0;
+  }
+};
+
+using DampingTerms = TypeList<DashpotTerm, ViscosityTerm, DragTerm>;
+
+}  // namespace sinew

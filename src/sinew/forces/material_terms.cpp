@@ -1,0 +1,86 @@
+#include "sinew/forces/material_terms.h"
+
+#include "sinew/base/parallel.h"
+#include "sinew/forces/network.h"
+#include "sinew/forces/springs.h"
+#include "sinew/forces/volume.h"
+
+namespace sinew {
+
+double SpringTerm::energy(const Configuration& at) {
+  return spring_energy(at.model, at.x);
+}
+
+void SpringTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
+  for (std::size_t s = 0; s < at.model.springs.size(); ++s) {
+    const auto [i, j] = at.model.springs[s];
+    const Vec3 pull = spring_pull(at.x[uz(j)] - at.x[uz(i)], Vec3::Zero(), at.model.stiffness[s],
+                                  at.model.rest_length[s], 0.0)
+                          .force;
+    forces[uz(i)] += pull;
+    forces[uz(j)] -= pull;
+  }
+}
+
+double NetworkTerm::energy(const Configuration& at) {
+  return network_energy(at.model, at.x);
+}
+
+void NetworkTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
+  if (at.model.network_start.empty()) return;
+  for (Index i = 0; i < at.model.node_count(); ++i)
+    forces[uz(i)] += network_pull(at.model, at.x, i);
+}
+
+double VolumeTerm::energy(const Configuration& at) {
+  Workspace workspace(at.model);
+  return volume_energy(at.model, at.x, workspace);
+}
+
+void VolumeTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
+  if (!at.model.has_volume) return;
+  Workspace workspace(at.model);
+  compute_volume_pressures(at.model, at.x, workspace);
+  for (Index i = 0; i < at.model.node_count(); ++i)
+    forces[uz(i)] += push_of_tets(at.model, workspace, i);
+}
+
+double GravityTerm::energy(const Configuration& at) {
+  return parallel_sum(at.model.node_count(), [&](Index i) {
+    const auto k = uz(i);
+    if (at.model.inverse_mass[k] == 0.0) return 0.0;
+    return -at.model.mass[k] * at.controls.gravity.dot(at.x[k] - at.model.rest_position[k]);
+  });
+}
+
+void GravityTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
+  parallel_for(at.model.node_count(), [&](Index i) {
+    if (at.model.inverse_mass[uz(i)] > 0.0)
+      forces[uz(i)] += at.model.mass[uz(i)] * at.controls.gravity;
+  });
+}
+
+VolumeParts::VolumeParts(const Configuration& at) {
+  const Model& m = at.model;
+  if (!m.has_volume) return;
+  Workspace workspace(m);
+  compute_volume_pressures(m, at.x, workspace);
+  for (std::size_t t = 0; t < m.tets.size(); ++t)
+    stiffness.push_back(tet_volume_stiffness(m, workspace, t) / m.rest_volume[t]);
+  push = workspace.tet_pressure;
+  gradient = workspace.tet_gradient;
+  for (std::size_t c = 0; c < m.cell_volume.size(); ++c) {
+    Cell cell;
+    cell.stiffness = m.cell_bulk[c] / m.cell_volume[c];
+    for (auto k = uz(m.cell_start[c]); k < uz(m.cell_start[c + 1]); ++k) {
+      const auto t = uz(m.cell_tet[k]);
+      for (std::size_t a = 0; a < 4; ++a) {
+        cell.nodes.push_back(m.tets[t][a]);
+        cell.gradient.push_back(m.cell_weight[k] * gradient[t][a]);
+      }
+    }
+    cells.push_back(std::move(cell));
+  }
+}
+
+}  // namespace sinew

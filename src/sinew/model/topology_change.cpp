@@ -1,0 +1,38 @@
+#include "sinew/model/topology_change.h"
+
+#include <fmt/format.h>
+
+#include "sinew/base/error.h"
+
+namespace sinew {
+
+State transfer_state(const TopologyChange& change, const Model& before, const Model& after,
+                     const State& state) {
+  if (before.version != change.from || after.version != change.from + 1 ||
+      state.position.size() != before.rest_position.size() ||
+      change.node.size() != before.rest_position.size()) {
+    throw Error(ErrorKind::usage,
+                fmt::format("the change is one of version {} to {}, and the models are of versions "
+                            "{} and {}, or the state has another number of nodes",
+                            change.from, change.from + 1, before.version, after.version),
+                "give the two models that the change lies between, and a state of the first");
+  }
+  State out = initial_state(after);
+  out.last_step = state.last_step;
+  out.time = state.time;
+  out.step = state.step;
+  out.energy = state.energy;
+  out.obstacle_force = state.obstacle_force;
+  if (!state.reactions.ground.empty())
+    out.reactions.ground.assign(uz(after.body_node_count()), Vec3::Zero());
+  for (std::size_t i = 0; i < change.node.size(); ++i) {
+    if (change.node[i] < 0) continue;
+    const auto n = uz(change.node[i]);
+    out.position[n] = state.position[i];
+    out.half_velocity[n] = state.half_velocity[i];
+    if (i < state.reactions.ground.size()) out.reactions.ground[n] = state.reactions.ground[i];
+  }
+  return out;
+}
+
+}  // namespace sinew

@@ -1,0 +1,38 @@
+// Where a run stands: all that a checkpoint holds, besides the hash of the Model.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "sinew/model/state.h"
+#include "sinew/sim/run_counters.h"
+#include "sinew/solver/stepper.h"
+
+namespace sinew {
+
+// What the steps of one frame took: of the frame under way, or of the last one finished.
+struct FrameWork : RunCounters {
+  double seconds = 0.0;    // of wall time
+  std::int64_t steps = 0;  // [1]
+};
+
+struct RunState : RunCounters {
+  State state;
+  StepperKind stepper = StepperKind::automatic;  // the one that runs; automatic: to be chosen
+  std::string stepper_reason;                    // why it was chosen; empty: the scene names it
+  StepMemory memory;                             // of the stepper
+  std::int64_t frame = 0;                        // frames finished; frame 0 is the start
+  std::int64_t steps_left = 0;                   // steps to the end of the frame under way
+  double step = 0.0;                             // h now taken [s]
+  double target_step = 0.0;           // the longest h that may be taken [s]; 0: not begun
+  double smallest_stable_step = 0.0;  // over the run [s]
+  double start_energy = 0.0;          // total at the start [J]
+  double wall_seconds = 0.0;          // spent so far
+  std::vector<double> frame_times;    // of the frames written [s]
+  FrameWork work;
+  std::int64_t frames_cut_short = 0;  // frames with steps that budget_ms ended
+  std::vector<double> frame_seconds;  // FrameWork::seconds of every frame, where there is a budget
+};
+
+}  // namespace sinew

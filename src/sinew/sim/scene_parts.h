@@ -1,0 +1,16 @@
+// What a SceneBuilder holds.
+#pragma once
+
+#include <sinew/scene_builder.h>
+
+#include "sinew/scene/document.h"
+#include "sinew/scene/scene.h"
+
+namespace sinew {
+
+struct SceneBuilder::Parts {
+  DocValue root;
+  GivenMeshes given;
+};
+
+}  // namespace sinew

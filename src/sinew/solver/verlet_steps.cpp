@@ -1,0 +1,123 @@
+// stepper = "verlet": explicit steps, with a watch on the longest stable one as the body deforms.
+#include <algorithm>
+#include <cmath>
+
+#include "sinew/forces/packed.h"
+#include "sinew/forces/volume.h"
+#include "sinew/solver/stable_step.h"
+#include "sinew/solver/stepper.h"
+#include "sinew/solver/verlet.h"
+
+namespace sinew {
+namespace {
+
+// Steps between two estimates of the stable step; an estimate costs about as much as two steps in
+// double precision, or as five in single. As long as the body is calm they grow, from the first to
+// the last; a body that stiffens or is moved calls for the first again.
+constexpr std::int64_t first_watch = 6;
+constexpr std::int64_t last_watch = 48;
+constexpr double calm = 0.97;  // of the stable step is left since the last estimate, or more
+
+// Whether the path goes on anywhere between the times `from` and `to`.
+bool path_moves(const Path& path, double from, double to) {
+  KeyFrame last;
+  for (const KeyFrame& key : path.keys) {
+    const bool differs =
+        key.move != last.move || key.turn != last.turn || key.deform != last.deform;
+    if (differs && key.time > from && last.time < to) return true;
+    last = key;
+  }
+  return false;
+}
+
+// Whether pins or obstacles move anywhere between the times `from` and `to`.
+bool model_is_moved(const Model& model, double from, double to) {
+  const auto goes_on = [&](const auto& thing) { return path_moves(thing.path, from, to); };
+  return std::any_of(model.pins.begin(), model.pins.end(), goes_on) ||
+         std::any_of(model.obstacles.begin(), model.obstacles.end(), goes_on);
+}
+
+class VerletSteps : public Stepper {
+ public:
+  VerletSteps(const Model& model, const StepperOptions& options)
+      : model_(model), workspace_(model) {
+    if (options.precision == Precision::single) {
+      workspace_.packed = std::make_shared<PackedForces>(model);
+    }
+  }
+
+  FirstStep begin(const Controls& controls, const State& state, StepMemory& memory) override {
+    StableStep stable = find_stable_step(model_, controls, state.position, workspace_);
+    memory = {stable.step, std::move(stable.mode), first_watch, first_watch};
+    return {stable.step, no_limit,
+            "the stiffest spring is " + describe_spring(model_, stable.stiffest)};
+  }
+
+  std::optional<double> watch(double h, const Controls& controls, const State& state,
+                              StepMemory& memory) override {
+    if (memory.steps_to_watch > 0) return std::nullopt;
+    return estimate(h, controls, state, memory);
+  }
+
+  StepReport step(double h, const Controls& controls, const Interrupt&, State& state,
+                  StepMemory& memory) override {
+    const VerletReport step = verlet_step(model_, controls, h, state, workspace_);
+    --memory.steps_to_watch;
+    StepReport report;
+    report.contacts = step.contact.contacts;
+    report.deepest = step.contact.deepest;
+    report.friction = step.contact.friction;
+    report.limit_sweeps = step.limit_sweeps;
+    report.limits_met = step.limits_met && step.volume_met;
+    report.recovered = step.righted;
+    stepped_ = true;
+    if (model_.has_volume) report.stable_step = with_guard(memory.stable_step);
+    return report;
+  }
+
+  double stable_step(const StepMemory& memory) const override {
+    const bool guarded = model_.has_volume && stepped_;
+    return guarded ? std::min(memory.stable_step, with_guard(memory.stable_step))
+                   : memory.stable_step;
+  }
+
+  Workspace& workspace() override { return workspace_; }
+
+ private:
+  std::optional<double> estimate(double h, const Controls& controls, const State& state,
+                                 StepMemory& memory) {
+    memory.steps_to_watch = memory.watch_interval;
+    if (memory.stiff_mode.empty()) return std::nullopt;
+    const double before = memory.stable_step;
+    memory.stable_step =
+        watch_stable_step(model_, controls, state.position, h, memory.stiff_mode, workspace_);
+    const bool stirred =
+        memory.stable_step < calm * before ||
+        model_is_moved(model_, state.time, state.time + static_cast<double>(last_watch) * h);
+    memory.watch_interval = stirred ? first_watch : std::min(2 * memory.watch_interval, last_watch);
+    memory.steps_to_watch = memory.watch_interval;
+    return memory.stable_step;
+  }
+
+  // The guard of tets about to turn over is stiffer than all the rest and acts at once: the stable
+  // step with it; infinity where it does not act.
+  double with_guard(double stable) const {
+    const double omega2 = guard_frequency2(model_, workspace_);
+    if (omega2 == 0.0) return no_limit;
+    const double omega = 2.0 / stable;
+    return 2.0 / std::sqrt(omega * omega + omega2);
+  }
+
+  const Model& model_;
+  Workspace workspace_;
+  bool stepped_ = false;  // the workspace holds the forces of a step
+};
+
+}  // namespace
+
+std::unique_ptr<Stepper> verlet_steps(const Model& model, const StepperOptions& options);
+std::unique_ptr<Stepper> verlet_steps(const Model& model, const StepperOptions& options) {
+  return std::make_unique<VerletSteps>(model, options);
+}
+
+}  // namespace sinew

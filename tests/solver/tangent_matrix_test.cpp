@@ -1,0 +1,30 @@
+#include "sinew/solver/tangent_matrix.h"
+
+#include <gtest/gtest.h>
+
+#include "sinew/forces/stiffness.h"
+#include "tests/support/everything.h"
+
+namespace sinew {
+namespace {
+
+// The product with the assembled matrix against the one without (tests/forces/terms_test.cpp holds
+// that against the terms one by one).
+TEST(TangentMatrix, HasEveryTerm) {
+  const test::Everything e;
+  Workspace workspace(e.model);
+  prepare_stiffness(e.model, e.x, workspace);
+  const std::vector<Vec3> u = e.free_field();
+  std::vector<Vec3> plain(u.size()), product(u.size());
+  stiffness_damping_times(e.at(e.x), 1.0, 0.0, u, Tangent::full, workspace, plain);
+  TangentMatrix matrix(e.model);
+  matrix.assemble({e.model, e.controls}, e.x, e.time, workspace);
+  Field4 u4(u.size()), out4(u.size());
+  for (std::size_t i = 0; i < u.size(); ++i) u4[i] = Float4(u[i]);
+  matrix.times(u4, out4);
+  for (std::size_t i = 0; i < u.size(); ++i) product[i] = out4[i].vec3();
+  EXPECT_LT((test::flat(product) - test::flat(plain)).norm(), 1e-5 * test::flat(plain).norm());
+}
+
+}  // namespace
+}  // namespace sinew
