@@ -12,7 +12,8 @@ find_package(tomlplusplus REQUIRED)
 add_library(sinew_flags INTERFACE)
 # The same scene gives the same bits: no fused multiply-adds behind our back, no -march=native.
 target_compile_options(sinew_flags INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wshadow -ffp-contract=off
+  -Wall -Wextra -Wpedantic -Wconversion -ffp-contract=off
+  $<$<NOT:$<BOOL:$<TARGET_PROPERTY:SINEW_BATCH_SHADOWS>>>:-Wshadow>
   $<$<BOOL:${SINEW_WERROR}>:-Werror>)
 target_include_directories(sinew_flags INTERFACE
   ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)

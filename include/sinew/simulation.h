@@ -12,8 +12,8 @@
 // simulation as it was: usage for a wrong call (a value that is not finite, an unknown name, the
 // handle of a removed thing or of another simulation, a simulation that was moved from), input for
 // a scene or a value in it, unstable for a step above the stable one, io for a file. The one
-// exception is Error(diverged): the state became infinite; it is put back to the end of the last
-// frame (of 1/fps seconds), and the simulation can go on from there. Nothing is printed.
+// exception is Error(diverged): the state became infinite. The simulation then returns to the state
+// at the end of an earlier frame, at most a frame (1/fps) and 1/60 s before. Nothing is printed.
 //
 // Threads. A Simulation may be used by one thread at a time, and by a different thread each time;
 // several may be used by several threads at once. interrupt() alone may be called at any time. A
@@ -88,8 +88,8 @@ struct ProbeValue {
 };
 
 enum class EventKind {
-  inverted,         // tets are inside out at the end of a frame; count: how many
-  diverged,         // the state was put back to the end of the last frame
+  inverted,         // there are inverted tets at the end of a frame; count: how many
+  diverged,         // the state is that at the end of an earlier frame again
   stepper_changed,  // text: the stepper, and why
   step_shortened,   // the body became stiffer: count: how many times within a frame
 };
@@ -169,7 +169,7 @@ class SINEW_API Simulation {
   std::span<const Tet> tets() const;             // node ids (tets)
   std::span<const Triangle> surface() const;     // node ids, of all bodies
   std::span<const BodyInfo> bodies() const;      // in the scene's order
-  Index inverted_tets() const;                   // tets that are inside out now
+  Index inverted_tets() const;                   // tets of negative volume now
   Index nearest_node(const Point& place) const;  // of the surface
   std::vector<ProbeValue> probes() const;
 

@@ -133,7 +133,7 @@ TEST(PlotSvg, MakesRoomForLongNames) {
   Plot plot = two_series();
   plot.width = plot.height = 1;
   plot.levels = {{std::string(200, 'x'), 5.0}};
-  for (Series& s : plot.series) s.name = std::string(300, 'w') + "\"<&";
+  for (Series& s : plot.series) s.name.assign(300, 'w').append("\"<&");
   const Svg svg(to_svg(plot));
 }
 

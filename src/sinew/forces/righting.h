@@ -1,4 +1,5 @@
-// Righting: what takes the place of the material while a body is tangled. docs/methods/righting.md.
+// Inversion recovery: what takes the place of the material while a body is tangled.
+// docs/methods/inversion-recovery.md.
 //
 // No energy of a material leads back to the rest shape from everywhere: a fold in which every tet
 // has its right side out is a rest state too. A body much of which is inside out (started so, or

@@ -42,7 +42,7 @@ Clock::duration seconds(double s) {
 }
 
 // When a simulated time is due by the clock; how fast it really goes.
-class Pace {
+class ClockPace {
  public:
   void start(double time, double scale) {
     anchor_ = window_ = Clock::now();
@@ -129,7 +129,7 @@ void Runner::obey(std::deque<Command>& commands) {
 }
 
 void Runner::work() {
-  Pace pace;
+  ClockPace pace;
   while (true) {
     std::deque<Command> commands;
     {

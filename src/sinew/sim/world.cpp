@@ -343,7 +343,7 @@ void World::end_frame() {
   good_ = run_.state;
   const Index count = count_inside_out(*model_, run_.state.position);
   if (count > 0 && last_inside_out_ == 0)
-    note(EventKind::inverted, count, fmt::format("{} tets are inside out", count));
+    note(EventKind::inverted, count, fmt::format("{} tets are inverted", count));
   last_inside_out_ = count;
 }
 

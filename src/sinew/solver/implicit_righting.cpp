@@ -1,4 +1,4 @@
-// Implicit steps of a body that is tangled. docs/methods/righting.md.
+// Implicit steps of a body that is tangled. docs/methods/inversion-recovery.md.
 #include <algorithm>
 
 #include "sinew/base/parallel.h"
