@@ -17,7 +17,7 @@ target_sources(sinew_library PUBLIC FILE_SET HEADERS
   BASE_DIRS ${PROJECT_SOURCE_DIR}/include FILES ${headers})
 target_compile_features(sinew_library INTERFACE cxx_std_20)
 target_link_libraries(sinew_library PRIVATE Threads::Threads TBB::tbb fmt::fmt pugixml::pugixml
-  ZLIB::ZLIB hwy::hwy)
+  ZLIB::ZLIB hwy::hwy tomlplusplus::tomlplusplus)
 set_target_properties(sinew_library PROPERTIES OUTPUT_NAME sinew EXPORT_NAME sinew
   LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 if(BUILD_SHARED_LIBS AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
@@ -54,7 +54,7 @@ install(FILES ${PROJECT_BINARY_DIR}/package/SinewConfig.cmake
 # pkg-config. Who links the archive links what it uses, too; the shared library brings it along.
 set(pc_requires "")
 if(NOT BUILD_SHARED_LIBS)
-  set(pc_requires "\nRequires: tbb fmt pugixml zlib libhwy")
+  set(pc_requires "\nRequires: tbb fmt pugixml zlib libhwy tomlplusplus")
 endif()
 set(pc_folder ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig)
 file(RELATIVE_PATH pc_prefix ${pc_folder} ${CMAKE_INSTALL_PREFIX})

@@ -43,8 +43,8 @@ int main() {
     scene.set_stepping({.stepper = "static"});  // the shape at rest, not the way there
     scene.add_body({.name = "bar",
                     .arrays = two_part_bar(),
-                    .regions = {{.name = "stiff", .labels = {1}, .material = {.young = 60e3}},
-                                {.name = "soft", .labels = {2}, .material = {.young = 15e3}}}});
+                    .regions = {{.name = "stiff", .labels = {1}, .material = {.young = 400e3}},
+                                {.name = "soft", .labels = {2}, .material = {.young = 100e3}}}});
     scene.add_pin({.name = "wall", .select = {.side = "-z"}});
 
     sinew::Simulation simulation(scene);
