@@ -23,9 +23,12 @@ SurfacePoint surface_of(const Obstacle& o, const Vec3& q) {
       return capsule_surface(q, o.half.z(), o.radius);
     case ObstacleShape::box:
       return box_surface(q, o.half);
-    default:
+    case ObstacleShape::sphere:
       return sphere_surface(q, o.radius);
+    case ObstacleShape::mesh:  // no formula: contact/surfaces.h finds its contacts
+      break;
   }
+  return {};
 }
 
 std::optional<double> enters(const Obstacle& o, const Vec3& q0, const Vec3& q1) {
@@ -36,9 +39,12 @@ std::optional<double> enters(const Obstacle& o, const Vec3& q0, const Vec3& q1) 
       return enters_capsule(q0, q1, o.half.z(), o.radius);
     case ObstacleShape::box:
       return enters_box(q0, q1, o.half);
-    default:
+    case ObstacleShape::sphere:
       return enters_sphere(q0, q1, o.radius);
+    case ObstacleShape::mesh:
+      break;
   }
+  return {};
 }
 
 // Its half sides along the world's axes.
@@ -49,9 +55,13 @@ Vec3 extent(const Obstacle& o, const Mat3& turn) {
       return m.col(2) * o.half.z() + Vec3::Constant(o.radius);
     case ObstacleShape::box:
       return m * o.half;
-    default:
+    case ObstacleShape::sphere:
       return Vec3::Constant(o.radius);
+    case ObstacleShape::plane:  // without bounds: nobody asks for its box
+    case ObstacleShape::mesh:
+      break;
   }
+  return Vec3::Zero();
 }
 
 double farthest(const Obstacle& o) {
