@@ -54,7 +54,7 @@ inline sinew::SceneBuilder box_scene() {
                   .size = {{0.1, 0.1, 0.1}},
                   .position = {{0.05, 0.05, 0.05}},
                   .material = {.young = 5e3}});
-  scene.add_pin({.name = "floor", .select = {.side = "-y"}});
+  scene.add_pin({.name = "floor", .body = "box", .select = {.side = "-y"}});
   scene.add_obstacle(
       {.name = "ball", .center = {{0.05, 0.13, 0.05}}, .radius = 0.02, .friction = 0.3});
   return scene;
