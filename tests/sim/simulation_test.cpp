@@ -153,14 +153,16 @@ TEST(Simulation, APressedBallFeelsForceAndTorque) {
     SceneBuilder scene = standing_box("implicit");
     ObstacleDescription o = ball;
     if (soft) {
-      o.soft = true;
+      o.soft = true;  // pushes nodes alone: one that fits between them would touch nothing
+      o.radius = 0.05;
+      o.center = {{0.05, 0.155, 0.05}};
       o.friction.reset();
     }
     scene.add_obstacle(o);
     Simulation s(scene);
     const ObstacleHandle tool = s.obstacle("ball");
     for (int i = 1; i <= 20; ++i) {
-      s.move(tool, {.center = {0.05, 0.125 - 1e-3 * i, 0.05}});
+      s.move(tool, {.center = {0.05, (soft ? 0.155 : 0.125) - 1e-3 * i, 0.05}});
       s.advance(5e-3);
     }
     const Wrench w = s.wrench(tool, {0.05, 0.0, 0.05});
@@ -238,7 +240,7 @@ TEST(Simulation, ObstaclesComeAndGoInMidRun) {
   const std::string before = s.hash();
   const ObstacleHandle tool = s.add_obstacle(ball);
   EXPECT_EQ(s.hash(), before);  // nothing has moved
-  s.move(tool, {.center = {0.05, 0.11, 0.05}});
+  s.move(tool, {.center = {0.05, 0.1, 0.05}});
   s.advance(0.05);
   EXPECT_GT(s.wrench(tool).force[1], 0.0);
   const Point where = s.pose(tool).center;

@@ -164,7 +164,8 @@ std::int64_t Simulation::steps() const {
   return world().state().step;
 }
 double Simulation::last_step() const {
-  return world().state().last_step;
+  const RunState& run = world().run();
+  return run.state.step > 0 ? run.step : 0.0;
 }
 double Simulation::stable_step() const {
   const sim::World& w = world();

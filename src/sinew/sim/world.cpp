@@ -107,6 +107,7 @@ void World::build(Source source) {
   }
   remember();
   note_stepper(StepperKind::automatic);
+  look_for_inverted_tets();
 }
 
 // What is read of the model.
@@ -341,6 +342,11 @@ bool World::advance(double seconds) {
 void World::end_frame() {
   if (run_.state.time - good_.time < between_looks * (1.0 - 1e-9)) return;
   good_ = run_.state;
+  look_for_inverted_tets();
+}
+
+// Tells when the first tets invert; the next time when some do after none was.
+void World::look_for_inverted_tets() {
   const Index count = count_inside_out(*model_, run_.state.position);
   if (count > 0 && last_inside_out_ == 0)
     note(EventKind::inverted, count, fmt::format("{} tets are inverted", count));

@@ -138,6 +138,7 @@ class World {
   template <typename F>
   void guarded(const F& steps);
   void end_frame();
+  void look_for_inverted_tets();
   void start_moves(double span);
   void set_path(std::size_t obstacle, const Path& path);
   void note(EventKind kind, std::int64_t count, std::string text);
