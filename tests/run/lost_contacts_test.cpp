@@ -11,7 +11,7 @@
 namespace sinew {
 namespace {
 
-RunState run_of(const std::string& name, double* rest_depth = nullptr) {
+RunState run_case(const std::string& name, double* rest_depth = nullptr) {
   const Scene scene = load_scene(test::source_path("tests/data/contact/" + name + ".toml"), {});
   const Model model = build_model(scene);
   RunState run;
@@ -28,8 +28,8 @@ RunState run_of(const std::string& name, double* rest_depth = nullptr) {
 
 TEST(LostContacts, APlaneHoldsABodyAsTheGroundDoes) {
   double rest = 0.0;
-  const RunState plane = run_of("plane", &rest);
-  const RunState ground = run_of("ground");
+  const RunState plane = run_case("plane", &rest);
+  const RunState ground = run_case("ground");
   EXPECT_EQ(plane.state.hash(), ground.state.hash());
   EXPECT_LT(plane.deepest, 1e-9);
   EXPECT_LT(rest, 1e-9);
@@ -38,14 +38,14 @@ TEST(LostContacts, APlaneHoldsABodyAsTheGroundDoes) {
 
 TEST(LostContacts, AFineBoxThatRollsStaysOnThePlane) {
   double rest = 0.0;
-  const RunState run = run_of("mesh2", &rest);
+  const RunState run = run_case("mesh2", &rest);
   EXPECT_LT(run.deepest, 1e-9);
   EXPECT_LT(rest, 1e-9);
 }
 
 TEST(LostContacts, ABoxThatSlidesOnABoxStaysOutside) {
   double rest = 0.0;
-  const RunState run = run_of("sphere_box", &rest);
+  const RunState run = run_case("sphere_box", &rest);
   EXPECT_LT(run.deepest, 2e-4);
   EXPECT_LT(rest, 2e-5);  // it comes to lean over the edge, on rods between its nodes
 }

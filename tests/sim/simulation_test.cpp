@@ -155,14 +155,14 @@ TEST(Simulation, APressedBallFeelsForceAndTorque) {
     if (soft) {
       o.soft = true;  // pushes nodes alone: one that fits between them would touch nothing
       o.radius = 0.05;
-      o.center = {{0.05, 0.155, 0.05}};
+      o.center = {{0.05, 0.145, 0.05}};
       o.friction.reset();
     }
     scene.add_obstacle(o);
     Simulation s(scene);
     const ObstacleHandle tool = s.obstacle("ball");
     for (int i = 1; i <= 20; ++i) {
-      s.move(tool, {.center = {0.05, (soft ? 0.155 : 0.125) - 1e-3 * i, 0.05}});
+      s.move(tool, {.center = {0.05, (soft ? 0.145 : 0.125) - 1e-3 * i, 0.05}});
       s.advance(5e-3);
     }
     const Wrench w = s.wrench(tool, {0.05, 0.0, 0.05});

@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path validation = test::source_path("validation");
+const fs::path validation = sinew::test::source_path("validation");
 
 class CaseFiles : public testing::Test {
  protected:
