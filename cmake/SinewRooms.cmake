@@ -71,6 +71,11 @@ function(sinew_room name level)
     sinew_precompile(sinew_${name} sinew_base)
     set_target_properties(sinew_${name} PROPERTIES UNITY_BUILD ${SINEW_FAST_BUILD}
       UNITY_BUILD_BATCH_SIZE ${SINEW_BATCH})
+    if(SINEW_FAST_BUILD AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+      # To clang a local name shadows the unnamed namespace of another file of the batch; g++ checks
+      # the same sources.
+      set_target_properties(sinew_${name} PROPERTIES SINEW_BATCH_SHADOWS ON)
+    endif()
     if(BUILD_SHARED_LIBS)  # which shows what is marked SINEW_API alone
       set_target_properties(sinew_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON
         CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
