@@ -9,9 +9,9 @@
 #include "sinew/base/hash.h"
 #include "sinew/base/parallel.h"
 #include "sinew/base/random.h"
+#include "sinew/contact/contact_solver.h"
 #include "sinew/contact/explicit_contacts.h"
 #include "sinew/contact/ground.h"
-#include "sinew/contact/respond.h"
 #include "sinew/contact/surfaces.h"
 #include "sinew/forces/assemble.h"
 #include "sinew/forces/terms.h"
@@ -109,7 +109,7 @@ void AnswerToLyingBeams(benchmark::State& state) {
     state.PauseTiming();
     copy = s;
     state.ResumeTiming();
-    answer = respond_to_contacts(model, found, workspace.force, h, copy, scratch);
+    answer = solve_contacts(model, found, workspace.force, h, copy, scratch);
   }
   state.counters["contacts"] = static_cast<double>(found.size());
   state.counters["push"] = static_cast<double>(answer.contacts);

@@ -11,8 +11,8 @@
 
 #include "sinew/base/hash.h"
 #include "sinew/base/parallel.h"
-#include "sinew/forces/limits.h"
 #include "sinew/forces/stiffness.h"
+#include "sinew/forces/strain_limits.h"
 #include "sinew/forces/terms.h"
 #include "sinew/scene/build.h"
 #include "sinew/solver/implicit.h"

@@ -115,7 +115,7 @@ std::string interventions(const Summary& s) {
   add(s.step_reductions, "times shorter");
   add(s.step_increases, "times longer");
   add(s.step_cuts, "cut in half");
-  add(s.righting_steps, "led a tangled body back");
+  add(s.recovery_steps, "led a tangled body back");
   add(s.peak_inverted_tets, "tets inverted at the most");
   return text;
 }

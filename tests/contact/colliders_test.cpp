@@ -6,7 +6,7 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/base/random.h"
-#include "sinew/contact/find.h"
+#include "sinew/contact/contact_finder.h"
 #include "sinew/contact/shapes.h"
 #include "sinew/contact/touch_surface.h"
 #include "sinew/forces/obstacles.h"

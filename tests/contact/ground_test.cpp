@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "sinew/contact/respond.h"
+#include "sinew/contact/contact_solver.h"
 #include "sinew/forces/assemble.h"
 #include "sinew/forces/workspace.h"
 
@@ -32,7 +32,7 @@ struct Ball {
     state.position[0] += h * state.half_velocity[0];
     std::vector<Contact> found;
     find_ground_contacts(model, state.position, 0.0, found);
-    const ContactReport r = respond_to_contacts(model, found, force, h, state, scratch);
+    const ContactReport r = solve_contacts(model, found, force, h, state, scratch);
     contacts += r.contacts;
     dissipated += r.dissipated;
     state.last_step = h;

@@ -9,7 +9,7 @@ namespace {
 
 TEST(Overlaps, CubesThatOverlapAreKnownWithTheirDepth) {
   const TetMesh cube = box(Vec3(0.1, 0.1, 0.1), {4, 4, 4});
-  const Model model = testing::touching_model(
+  const Model model = testing::surface_pair_model(
       {cube, testing::moved(cube, Vec3(0.01, 0.09, 0.013)), testing::moved(cube, Vec3(1, 0, 0))});
   const std::vector<Overlap> found = find_overlaps(model, model.rest_position);
   ASSERT_EQ(found.size(), 2u);
@@ -25,7 +25,7 @@ TEST(Overlaps, CubesThatOverlapAreKnownWithTheirDepth) {
 
 TEST(Overlaps, BodiesThatTouchDoNotOverlap) {
   const TetMesh ball = sphere(0.05, 3);
-  const Model model = testing::touching_model({ball, testing::moved(ball, Vec3(0, 0.11, 0))});
+  const Model model = testing::surface_pair_model({ball, testing::moved(ball, Vec3(0, 0.11, 0))});
   EXPECT_TRUE(find_overlaps(model, model.rest_position).empty());
 }
 

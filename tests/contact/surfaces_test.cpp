@@ -14,7 +14,7 @@ namespace {
 using testing::contacts_of;
 using testing::moved;
 using testing::random_rotation;
-using testing::touching_model;
+using testing::surface_pair_model;
 
 #ifdef SINEW_SANITIZED
 constexpr bool sanitized = true;  // geometry takes ten times as long
@@ -24,7 +24,7 @@ constexpr bool sanitized = false;
 
 TEST(SurfaceContacts, TwoCubesThatLieOnEachOther) {
   const TetMesh cube = box(Vec3(0.1, 0.1, 0.1), {4, 4, 4});
-  const Model model = touching_model({cube, moved(cube, Vec3(0.011, 0.1, 0.013))});
+  const Model model = surface_pair_model({cube, moved(cube, Vec3(0.011, 0.1, 0.013))});
   std::vector<Vec3> to = model.rest_position;
   for (Index i = model.bodies[1].nodes.begin; i < model.bodies[1].nodes.end; ++i) {
     to[uz(i)].y() -= 1e-4;
@@ -56,7 +56,7 @@ TEST(SurfaceContacts, NothingTouchesAtRestOrMovedRigidlyOrStretched) {
                                        ellipsoid(Vec3(0.1, 0.03, 0.01), 4),
                                        box(Vec3(0.3, 0.3, 0.003), {3, 3, 1})};
   for (const TetMesh& mesh : meshes) {
-    const Model model = touching_model({mesh});
+    const Model model = surface_pair_model({mesh});
     SurfaceContacts contacts(model);
     std::vector<Contact> found;
     const auto& rest = model.rest_position;
@@ -84,7 +84,7 @@ TEST(SurfaceContacts, NothingTouchesAtRestOrMovedRigidlyOrStretched) {
 TEST(SurfaceContacts, AFastBallDoesNotTunnelThroughAMembrane) {
   const TetMesh membrane = box(Vec3(0.2, 0.001, 0.2), {20, 1, 20});
   const TetMesh ball = moved(sphere(0.02, 3), Vec3(0.0031, 0.05, 0.0042));
-  const Model model = touching_model({membrane, ball});
+  const Model model = surface_pair_model({membrane, ball});
   for (const double way : {0.01, 0.031, 0.05, 0.1, 0.8}) {
     std::vector<Vec3> to = model.rest_position;
     Index through = 0;
@@ -131,7 +131,7 @@ TEST(SurfaceContacts, NothingGetsIntoAClosedSurfaceUnseen) {
   for (const TetMesh& target : targets) {
     const TetMesh grains = cloud(sanitized ? 60 : 400, 0.15, 1e-4, rng,
                                  [](const Vec3& p) { return p.cwiseAbs().maxCoeff() > 0.055; });
-    const Model model = touching_model({target, grains}, {true, false, 0.5, 0.0});
+    const Model model = surface_pair_model({target, grains}, {true, false, 0.5, 0.0});
     Index all_inside = 0;
     for (const double speed : {0.0005, 0.01, 0.05, 0.1, 0.3}) {
       std::vector<Vec3> to = model.rest_position;
@@ -171,7 +171,7 @@ TEST(SurfaceContacts, NothingGetsIntoAClosedSurfaceUnseen) {
 
 TEST(SurfaceContacts, TheGradientOfTheGapIsNormalTimesWeight) {
   const TetMesh ball = sphere(0.05, 3);
-  const Model model = touching_model({ball, moved(ball, Vec3(0.001, 0.0975, 0.002))});
+  const Model model = surface_pair_model({ball, moved(ball, Vec3(0.001, 0.0975, 0.002))});
   const std::vector<Vec3>& x = model.rest_position;
   std::size_t tried = 0;
   for (const Contact& c : contacts_of(model, x, x, 0.004)) {
@@ -197,7 +197,7 @@ TEST(SurfaceContacts, TheGradientOfTheGapIsNormalTimesWeight) {
 TEST(SurfaceContacts, TheOrderOfTheBodiesDoesNotMatter) {
   const TetMesh ball = sphere(0.05, 3);
   const TetMesh cube = moved(box(Vec3(0.1, 0.1, 0.1), {3, 3, 3}), Vec3(0.01, 0.0985, 0.02));
-  const Model one = touching_model({ball, cube}), two = touching_model({cube, ball});
+  const Model one = surface_pair_model({ball, cube}), two = surface_pair_model({cube, ball});
   const auto gaps = [](const Model& m) {
     std::vector<double> g;
     for (const Contact& c : contacts_of(m, m.rest_position, m.rest_position, 0.003)) {
@@ -215,7 +215,7 @@ TEST(SurfaceContacts, TheOrderOfTheBodiesDoesNotMatter) {
 TEST(SurfaceContacts, ABeamThatIsBentTouchesItself) {
   // Bent to a ring: a full turn of the middle line, and a little more.
   const TetMesh straight = beam(Vec3(0.02, 0.02, 0.4), {2, 2, 40});
-  const Model model = touching_model({straight});
+  const Model model = surface_pair_model({straight});
   const auto bent = [&](double turn) {  // [rad]
     std::vector<Vec3> x = model.rest_position;
     const double radius = 0.4 / turn;
@@ -253,7 +253,7 @@ TEST(SurfaceContacts, TheArmsOfAUTouchWhenTheyClose) {
     }
   }
   u.nodes = nodes;
-  const Model model = touching_model({u});
+  const Model model = surface_pair_model({u});
   const auto closed = [&](double by) {  // at the arms' ends
     std::vector<Vec3> x = model.rest_position;
     for (Vec3& p : x) {
@@ -274,7 +274,7 @@ TEST(SurfaceContacts, TheArmsOfAUTouchWhenTheyClose) {
 
 TEST(SurfaceContacts, WhatHasNoAreaGivesNoNonsense) {
   const TetMesh cube = box(Vec3(0.1, 0.1, 0.1), {3, 3, 3});
-  const Model model = touching_model({cube, moved(cube, Vec3(0.01, 0.0999, 0.013))});
+  const Model model = surface_pair_model({cube, moved(cube, Vec3(0.01, 0.0999, 0.013))});
   std::vector<std::vector<Vec3>> ends(4, model.rest_position);
   for (std::size_t i = 0; i < ends[0].size(); ++i) {
     ends[0][i] = Vec3::Zero();

@@ -20,7 +20,8 @@ inline TetMesh moved(const TetMesh& mesh, const Vec3& shift) {
   return moved(mesh, Mat3::Identity(), shift);
 }
 
-inline Model touching_model(const std::vector<TetMesh>& meshes, const Touch& touch = {true, true}) {
+inline Model surface_pair_model(const std::vector<TetMesh>& meshes,
+                                const Touch& touch = {true, true}) {
   Model model;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     BodySpec spec;

@@ -11,7 +11,7 @@ namespace {
 
 TEST(TouchSurface, OfTwoCubes) {
   const TetMesh cube = box(Vec3(0.1, 0.1, 0.1), {2, 2, 2});
-  const Model model = testing::touching_model({cube, testing::moved(cube, Vec3(1, 0, 0))});
+  const Model model = testing::surface_pair_model({cube, testing::moved(cube, Vec3(1, 0, 0))});
   const TouchSurface& s = model.surface;
   EXPECT_EQ(s.body_count, 2);
   EXPECT_EQ(s.owner_count(), 2);
@@ -38,7 +38,7 @@ TEST(TouchSurface, OfTwoCubes) {
 }
 
 TEST(TouchSurface, NoneWhereNothingTouches) {
-  Model model = testing::touching_model({box(Vec3(0.1, 0.1, 0.1), {2, 2, 2})});
+  Model model = testing::surface_pair_model({box(Vec3(0.1, 0.1, 0.1), {2, 2, 2})});
   model.touch.reset();
   build_touch_surface(model);
   EXPECT_TRUE(model.surface.empty());
@@ -49,7 +49,7 @@ TEST(TouchSurface, NoneWhereNothingTouches) {
 // A rigid mesh: nodes that belong to no body, after those of the bodies.
 TEST(TouchSurface, RigidMeshesTouchBodiesAndNotEachOther) {
   const TetMesh cube = box(Vec3(0.1, 0.1, 0.1), {4, 4, 4});
-  Model model = testing::touching_model({cube});
+  Model model = testing::surface_pair_model({cube});
   for (int k = 0; k < 2; ++k) {
     const auto first = model.node_count();
     const double y = -0.05 + 0.00001 * k;

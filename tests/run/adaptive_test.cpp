@@ -47,7 +47,7 @@ TEST(Adaptive, TheStepGrowsAgainWhenTheBodySoftens) {
   EXPECT_GT(s.step_reductions, 0);
   EXPECT_GT(s.step_increases, 0);
   EXPECT_GT(s.dt, 1.2 * s.stable_step);  // the last step is far above the shortest stable one
-  EXPECT_EQ(s.righting_steps, 0);
+  EXPECT_EQ(s.recovery_steps, 0);
 }
 
 // A given step that is stable at rest and not when stretched is divided, and comes back.
@@ -93,7 +93,7 @@ TEST(Adaptive, TheMostInvertedTetsOfAnyFrameAreCounted) {
                              {"bar.start=inverted", "bar.poisson=0.3", "bar.damping_ratio=0.1"});
   EXPECT_GT(s.peak_inverted_tets, 150);  // frame 0
   EXPECT_EQ(s.inverted_tets, 0);
-  EXPECT_GT(s.righting_steps, 0);
+  EXPECT_GT(s.recovery_steps, 0);
 }
 
 }  // namespace

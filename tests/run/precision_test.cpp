@@ -57,8 +57,8 @@ TEST(Precision, SingleIsTheSameBitsOnAnyNumberOfThreads) {
 TEST(Precision, SingleRightsATangledBody) {
   const Summary one = run_block({"precision=single", "block.start=inverted"});
   const Summary two = run_block({"precision=double", "block.start=inverted"});
-  EXPECT_GT(one.righting_steps, 0);
-  EXPECT_EQ(one.righting_steps, two.righting_steps);
+  EXPECT_GT(one.recovery_steps, 0);
+  EXPECT_EQ(one.recovery_steps, two.recovery_steps);
   EXPECT_EQ(one.inverted_tets, two.inverted_tets);
 }
 

@@ -7,10 +7,10 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
-#include "sinew/forces/limits.h"
+#include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
-#include "sinew/forces/righting.h"
+#include "sinew/forces/strain_limits.h"
 #include "sinew/forces/terms.h"
 #include "sinew/solver/stable_step.h"
 #include "tests/support/effort.h"
@@ -337,7 +337,8 @@ TEST(Verlet, ANonFiniteStateStopsAtThatStepAndNamesThePlace) {
   }
 }
 
-// The law itself leads a free body back from flat and inside out; righting does from everywhere.
+// The law itself leads a free body back from flat and inside out; inversion recovery does from
+// everywhere.
 TEST(Verlet, FindsBackFromTangledStarts) {
   for (const bool held : {false, true}) {
     for (const test::Tangle tangle : test::tangles) {

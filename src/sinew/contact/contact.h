@@ -1,6 +1,7 @@
 // What touches: a condition on the distance between a node or edge and what it may not enter.
-// Found by contact/surfaces.h and contact/colliders.h; answered by contact/respond.h in explicit
-// steps, by solver/constraints.h in implicit ones and rest states. docs/methods/contact.md.
+// Found by contact/surfaces.h and contact/colliders.h; answered by contact/contact_solver.h in
+// explicit steps, by solver/constraints.h in implicit ones and rest states.
+// docs/methods/contact.md.
 #pragma once
 
 #include <array>

@@ -117,7 +117,7 @@ ContactReport ExplicitContacts::step(const std::vector<Vec3>& before,
                                      const std::vector<Vec3>& force, double h, State& state) {
   find(before, force, h, state);
   state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
-  const ContactReport report = respond_to_contacts(model_, contacts_, force, h, state, scratch_);
+  const ContactReport report = solve_contacts(model_, contacts_, force, h, state, scratch_);
   state.energy.dissipated += report.dissipated;
   state.energy.work_in += report.work_in;
   return report;

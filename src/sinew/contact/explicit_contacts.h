@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include "sinew/contact/find.h"
-#include "sinew/contact/respond.h"
+#include "sinew/contact/contact_finder.h"
+#include "sinew/contact/contact_solver.h"
 #include "sinew/model/model.h"
 #include "sinew/model/state.h"
 #include "sinew/model/warm_start.h"

@@ -3,8 +3,8 @@
 #include <algorithm>
 
 #include "sinew/base/parallel.h"
-#include "sinew/contact/near_lists.h"
-#include "sinew/contact/touching.h"
+#include "sinew/contact/narrow_phase.h"
+#include "sinew/contact/neighbour_lists.h"
 
 namespace sinew {
 
@@ -21,8 +21,8 @@ struct SurfaceContacts::Search {
                  std::vector<Contact>& out) const;
   bool carried(Index edge, Index pair_number) const;
 
-  Touching touching;
-  NearLists lists;
+  NarrowPhase touching;
+  NeighbourLists lists;
   std::vector<Plane> planes;  // at the end of the step (triangles); those of the pair at hand
   std::vector<Index> held;    // the pair in which the node is at the other owner (node slots)
 };
@@ -49,7 +49,7 @@ void add_in_order(const std::vector<const NearPart*>& parts, std::vector<Contact
 }
 
 // How far away the first of a key's items is at least, [m].
-double least_distance(const NearPart& near, const NearList& list, Index k) {
+double least_distance(const NearPart& near, const NeighbourList& list, Index k) {
   return static_cast<double>(list.far_of(k)[0]) - near.moved;
 }
 
@@ -57,7 +57,7 @@ double least_distance(const NearPart& near, const NearList& list, Index k) {
 
 void SurfaceContacts::Search::add_nodes(const NearPart& near, bool calm, Index pair_number,
                                         const Moves& moves, std::vector<Contact>& out) {
-  const NearList& list = near.nodes;
+  const NeighbourList& list = near.nodes;
   for (Index k = 0; k < list.count(); ++k) {
     const Index slot = list.key[uz(k)];
     if (least_distance(near, list, k) > touching.node_range(slot, near.owner, moves.reach))
@@ -80,7 +80,7 @@ bool SurfaceContacts::Search::carried(Index edge, Index pair_number) const {
 void SurfaceContacts::Search::add_edges(const NearPart& near, bool self, bool calm,
                                         Index pair_number, const Moves& moves,
                                         std::vector<Contact>& out) const {
-  const NearList& list = near.edges;
+  const NeighbourList& list = near.edges;
   for (Index k = 0; k < list.count(); ++k) {
     const Index a = list.key[uz(k)];
     const double range = touching.edge_range(a, near.owner, moves.reach);

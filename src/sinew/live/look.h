@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "sinew/contact/find.h"
+#include "sinew/contact/contact_finder.h"
 #include "sinew/live/frame.h"
 #include "sinew/live/topology.h"
 #include "sinew/model/state.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "sinew/base/error.h"
-#include "sinew/contact/find.h"
+#include "sinew/contact/contact_finder.h"
 #include "sinew/forces/springs.h"
 #include "sinew/live/look.h"
 #include "sinew/run/recorder.h"

@@ -6,7 +6,7 @@
 #include <chrono>
 #include <memory>
 
-#include "sinew/contact/find.h"
+#include "sinew/contact/contact_finder.h"
 #include "sinew/live/ball.h"
 #include "sinew/live/command.h"
 #include "sinew/live/frame.h"

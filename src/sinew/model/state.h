@@ -35,7 +35,7 @@ static_assert(sizeof(ContactPush) == sizeof(ContactId) + 4 * sizeof(Index) + 7 *
 
 // What contacts, the ground and the limits push with at the end of the last step, where the next
 // one starts from; empty before the first. Verlet's steps know only contacts, the ground among them
-// (solver/constraints.h, contact/respond.h).
+// (solver/constraints.h, contact/contact_solver.h).
 struct Reactions {
   std::vector<Vec3> ground;      // of the ground on each node [N] (nodes of bodies)
   std::vector<double> tension;   // of each limited spring [N] (as Model::limited), < 0: it pushes

@@ -8,7 +8,7 @@
 
 #include "sinew/base/clock.h"
 #include "sinew/base/hash.h"
-#include "sinew/forces/righting.h"
+#include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/springs.h"
 #include "sinew/io/file_io.h"
 #include "sinew/run/force_curve.h"
@@ -164,11 +164,11 @@ class Runner {
     if (model_.bounces() && scene_.stepper == StepperKind::implicit) {
       s.warnings.push_back("implicit steps know no restitution: every impact is plastic");
     }
-    if (run.righting_steps > 0) {
+    if (run.recovery_steps > 0) {
       s.warnings.push_back(fmt::format(
           "a body was tangled (over {:.0f} % of its tets inside out) for {} of {} steps "
           "and was led back to its rest shape",
-          100.0 * tangled_share, run.righting_steps, run.state.step));
+          100.0 * tangled_share, run.recovery_steps, run.state.step));
     }
     if (!options_.out.empty()) {
       write_force_curves(options_.out, model_);

@@ -5,8 +5,8 @@
 
 #include "sinew/base/hash.h"
 #include "sinew/contact/overlaps.h"
-#include "sinew/forces/limits.h"
 #include "sinew/forces/springs.h"
+#include "sinew/forces/strain_limits.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/tet_mesh.h"
 #include "sinew/sim/obstacle_reading.h"

@@ -8,8 +8,8 @@
 
 #include "sinew/base/clock.h"
 #include "sinew/base/error.h"
-#include "sinew/contact/find.h"
-#include "sinew/forces/righting.h"
+#include "sinew/contact/contact_finder.h"
+#include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/volume.h"
 
 namespace sinew {

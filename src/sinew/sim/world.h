@@ -13,7 +13,7 @@
 
 #include "sinew/base/arena.h"
 #include "sinew/contact/contact.h"
-#include "sinew/contact/find.h"
+#include "sinew/contact/contact_finder.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/obstacle.h"
 #include "sinew/model/state.h"

@@ -127,7 +127,7 @@ double parallel_max(std::size_t n, const F& f) {
 Constraints::Constraints(const Model& model, double inertia, double rate, bool friction)
     : model_(model),
       friction_(friction && model.ground && model.ground->friction > 0.0),
-      touching_(model, node_compliance(model, inertia, rate), ratio, friction) {
+      narrow_phase_(model, node_compliance(model, inertia, rate), ratio, friction) {
   if (!model.ground && model.limited.empty() && !model.has_volume_limit) return;
   const std::vector<double> compliance = node_compliance(model, inertia, rate);
   if (model.ground) {
@@ -155,11 +155,11 @@ Constraints::Constraints(const Model& model, double inertia, double rate, bool f
 
 bool Constraints::empty() const {
   return ground_stiffness_.empty() && spring_stiffness_.empty() && cell_stiffness_.empty() &&
-         touching_.empty();
+         narrow_phase_.empty();
 }
 
 void Constraints::start(const State& state, const std::vector<Vec3>* from, double step) {
-  touching_.start(state, from, step);
+  narrow_phase_.start(state, from, step);
   from_ = from;
   hardness_ = 1.0;
   now_ = state.reactions;
@@ -242,7 +242,7 @@ double Constraints::value(const std::vector<Vec3>& x, const Workspace& workspace
     return bound_energy(cell_volume(model_, workspace, c), range.low, range.high,
                         hardness_ * cell_stiffness_[c], now_.pressure[c]);
   });
-  energy += touching_.value(x);
+  energy += narrow_phase_.value(x);
   return energy;
 }
 
@@ -271,7 +271,7 @@ void Constraints::spread(const std::vector<Vec3>& x, const Ground& ground, const
 
 void Constraints::add_forces(const std::vector<Vec3>& x, Workspace& workspace,
                              std::vector<Vec3>& force) const {
-  touching_.add_forces(x, force);
+  narrow_phase_.add_forces(x, force);
   spread(
       x, [&](std::size_t i) { return ground_push(i, x[i]); },
       [&](std::size_t k, double length) { return spring_pull(k, length); },
@@ -281,7 +281,7 @@ void Constraints::add_forces(const std::vector<Vec3>& x, Workspace& workspace,
 
 void Constraints::add_reactions(const std::vector<Vec3>& x, Workspace& workspace,
                                 std::vector<Vec3>& force) const {
-  touching_.add_reactions(force);
+  narrow_phase_.add_reactions(force);
   spread(
       x, [&](std::size_t i) { return now_.ground[i]; },
       [&](std::size_t k, double) { return now_.tension[k]; },
@@ -289,7 +289,7 @@ void Constraints::add_reactions(const std::vector<Vec3>& x, Workspace& workspace
 }
 
 void Constraints::linearise(const std::vector<Vec3>& x, Workspace& workspace) {
-  touching_.linearise(x);
+  narrow_phase_.linearise(x);
   node_block_.assign(ground_stiffness_.size(), Mat3::Zero());
   parallel_for(static_cast<Index>(node_block_.size()), [&](Index i) {
     const auto node = uz(i);
@@ -328,7 +328,7 @@ void Constraints::linearise(const std::vector<Vec3>& x, Workspace& workspace) {
 
 void Constraints::add_stiffness_times(const std::vector<Vec3>& u, Workspace& workspace,
                                       std::vector<Vec3>& out) const {
-  touching_.add_stiffness_times(u, out);
+  narrow_phase_.add_stiffness_times(u, out);
   parallel_for(static_cast<Index>(node_block_.size()),
                [&](Index i) { out[uz(i)] += node_block_[uz(i)] * u[uz(i)]; });
   for_each_limited(model_, [&](std::size_t k) {
@@ -390,8 +390,8 @@ ConstraintError Constraints::update(const std::vector<Vec3>& x, const Workspace&
     if (change > 0.0) grips = sum > 0.0 ? change / (grip_tolerance * sum) : no_limit;
   }
   now_ = std::move(next);
-  const ContactConstraints::Change touching = touching_.update(x);
-  now_.contacts = touching_.pushes();
+  const ContactConstraints::Change touching = narrow_phase_.update(x);
+  now_.contacts = narrow_phase_.pushes();
   return {std::max({ground, springs, cells, touching.distance}), std::max(grips, touching.grip),
           touching.anew};
 }
@@ -399,7 +399,7 @@ ConstraintError Constraints::update(const std::vector<Vec3>& x, const Workspace&
 void Constraints::store(State& state) const {
   state.reactions = now_;
   state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
-  touching_.add_obstacle_forces(state.obstacle_force);
+  narrow_phase_.add_obstacle_forces(state.obstacle_force);
 }
 
 Index Constraints::contacts() const {

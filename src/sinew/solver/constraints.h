@@ -24,7 +24,7 @@ struct ConstraintError {
 //   the volume of each limited cell                     |V - V_c| <= limit V_c
 // each as an energy of solver/bound.h, and friction on the nodes that the ground pushes. minimise()
 // finds the positions for given multipliers; update() makes the pushes found the new multipliers,
-// until they stay as they are (minimise_within).
+// until they stay as they are (minimise_augmented_lagrangian).
 //
 // The stiffness k of a condition on q is ten times what its nodes resist with one by one,
 // 1 / sum_i (|dq/dx_i|^2 / D_i) with D_i the diagonal of M inertia + C rate + K: what bounds the
@@ -76,14 +76,14 @@ class Constraints {
   // Multiplies every k; start() takes that back.
   void harden(double factor) {
     hardness_ *= factor;
-    touching_.harden(factor);
+    narrow_phase_.harden(factor);
   }
 
   Index contacts() const;  // nodes that the ground pushes, and contacts that push
   // Leaves the multipliers in the state, and what bodies push the obstacles with.
   void store(State& state) const;
-  ContactConstraints& touching() { return touching_; }
-  const ContactConstraints& touching() const { return touching_; }
+  ContactConstraints& touching() { return narrow_phase_; }
+  const ContactConstraints& touching() const { return narrow_phase_; }
 
  private:
   template <typename Ground, typename Spring, typename Cell>
@@ -108,7 +108,7 @@ class Constraints {
   std::vector<Mat3> node_block_;
   std::vector<SpringTangent> spring_tangent_;
   std::vector<double> cell_tangent_;
-  ContactConstraints touching_;
+  ContactConstraints narrow_phase_;
 };
 
 // Whether anything pushes.

@@ -6,16 +6,17 @@
 #include <vector>
 
 #include "sinew/contact/contact.h"
-#include "sinew/contact/find.h"
+#include "sinew/contact/contact_finder.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
 
 // A condition gap >= 0 with friction for every contact that was found, with places, weights and
-// normals as they were then: within a pass of minimise_within they stay, so that what is minimised
-// is smooth and has a tangent; update() finds them anew. After some passes it only adds to them: in
-// a fold two places can go to and fro between two faces for ever. Contacts keep their push from
-// pass to pass and from step to step by their id, or by the feature where the partner has changed.
+// normals as they were then: within a pass of minimise_augmented_lagrangian they stay, so that what
+// is minimised is smooth and has a tangent; update() finds them anew. After some passes it only
+// adds to them: in a fold two places can go to and fro between two faces for ever. Contacts keep
+// their push from pass to pass and from step to step by their id, or by the feature where the
+// partner has changed.
 class ContactConstraints {
  public:
   // compliance: of the nodes [m/N]; ratio: of a contact's stiffness and what its nodes resist with.

@@ -7,10 +7,10 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
+#include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/packed.h"
-#include "sinew/forces/righting.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 
@@ -115,14 +115,15 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   if (options.deadline && !(objective_value(objective, state, workspace_) < standing)) {
     state.position = stand;
   }
-  NewtonReport newton = minimise_within(objective, linear_, newton_options, workspace_, state);
+  NewtonReport newton =
+      minimise_augmented_lagrangian(objective, linear_, newton_options, workspace_, state);
   workspace_.packed.reset();
   report.newton += newton.newton;
   report.products += newton.products;
   if (!newton.rests && !options.deadline) {  // a start that flew too far: from where it stands
     state.position = stand;
     constraints_->start(state, &from, h);
-    newton = minimise_within(objective, linear_, newton_options, workspace_, state);
+    newton = minimise_augmented_lagrangian(objective, linear_, newton_options, workspace_, state);
     report.newton += newton.newton;
     report.products += newton.products;
   }

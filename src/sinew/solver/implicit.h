@@ -55,7 +55,7 @@ class ImplicitStepper {
   // impact in its first part on into the second, by (1 - g)/g = 2.4, and throw the body back.
   // Impacts are plastic, whatever the ground's restitution.
   //
-  // A tangled body (forces/righting.h) is led back towards its rest shape instead.
+  // A tangled body (forces/inversion_recovery.h) is led back towards its rest shape instead.
   //
   // Where Newton's method does not arrive, the step is taken in two halves, and so on. Throws
   // Error(diverged) where ten halvings are not enough. With a deadline the step is what Newton's

@@ -69,7 +69,7 @@ struct NewtonReport {
   int products = 0;       // Hessian products taken by the conjugate gradients
   double force = 0.0;     // |force| left [N]
   double residual = 0.0;  // as a share of what the body carries [-]
-  bool within = true;     // the constraints hold (minimise_within)
+  bool within = true;     // the constraints hold (minimise_augmented_lagrangian)
 };
 
 // Moves the free nodes of the state to the minimum near where they are.
@@ -83,8 +83,9 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
 // The same with the multipliers of objective.constraints found too: minimises for given
 // multipliers, makes the pushes found the new ones, and again until the conditions hold and the
 // forces rest.
-NewtonReport minimise_within(const Objective& objective, LinearSolver& linear,
-                             const NewtonOptions& options, Workspace& workspace, State& state);
+NewtonReport minimise_augmented_lagrangian(const Objective& objective, LinearSolver& linear,
+                                           const NewtonOptions& options, Workspace& workspace,
+                                           State& state);
 
 void keep_free(const Model& model, Field& f);  // 0 on the nodes whose motion is given
 

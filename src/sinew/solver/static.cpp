@@ -8,7 +8,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
-#include "sinew/forces/righting.h"
+#include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/solver/mean_edge.h"
@@ -250,7 +250,8 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
   for (;;) {
     const Field start = state.position;
     if (nudge_ > 0.0) objective.inertial = &start;
-    const NewtonReport once = minimise_within(objective, linear_, options, workspace_, state);
+    const NewtonReport once =
+        minimise_augmented_lagrangian(objective, linear_, options, workspace_, state);
     constraints_.store(state);
     constraints_.start(state, nullptr, 0.0);
     const int newton = report.newton + once.newton;
@@ -363,7 +364,7 @@ StaticReport StaticSolver::solve(const Controls& controls, double time,
     state = before;
     if (cuts == cuts_before_falling && falls.newton == 0) {
       const StaticProgress now{report.load_steps, 1.0, report.newton, 0.0};
-      falls = fall_to_rest(controls, start_time, time, options, now, state);
+      falls = relax_dynamically(controls, start_time, time, options, now, state);
       if (account(falls)) break;
     }
     state = before;

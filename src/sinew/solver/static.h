@@ -52,8 +52,8 @@ class StaticSolver {
   // is: Newton's method with conjugate gradients and a line search on the energy. Velocities become
   // zero, state.time = time. Dashpots and drag play no part.
   //
-  // A start that is tangled (forces/righting.h) is no guess worth keeping: the body starts from its
-  // rest shape, moved rigidly to where it is.
+  // A start that is tangled (forces/inversion_recovery.h) is no guess worth keeping: the body
+  // starts from its rest shape, moved rigidly to where it is.
   //
   // The ground, without friction, and the limits hold in it (solver/constraints.h). A body that
   // only the ground holds is put down on it first, straight along its normal, and then keeps its
@@ -75,8 +75,9 @@ class StaticSolver {
   Workspace& workspace() { return workspace_; }
 
  private:
-  NewtonReport fall_to_rest(const Controls& controls, double start_time, double time,
-                            const StaticOptions& options, StaticProgress progress, State& state);
+  NewtonReport relax_dynamically(const Controls& controls, double start_time, double time,
+                                 const StaticOptions& options, StaticProgress progress,
+                                 State& state);
   int move_pins_to(const Controls& controls, double start_time, double time, double share,
                    State& state);
   NewtonReport settle(Objective objective, const NewtonOptions& options, State& state);

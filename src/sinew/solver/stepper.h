@@ -31,7 +31,7 @@ struct StepReport {
   double friction = 0.0;          // work of friction in contacts [J]
   int limit_sweeps = 0;           // sweeps that moved a spring
   bool limits_met = true;         // the ground and the limits hold to their tolerances
-  int recovered = 0;              // bodies with inversion recovery (forces/righting.h)
+  int recovered = 0;              // bodies with inversion recovery (forces/inversion_recovery.h)
   double stable_step = no_limit;  // what the forces of this step allow the next one [s]
 };
 

@@ -1,10 +1,10 @@
-// Edges against edges: the part of Touching that is about them.
+// Edges against edges: the part of NarrowPhase that is about them.
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/contact/meeting.h"
+#include "sinew/contact/narrow_phase.h"
 #include "sinew/contact/nearest.h"
-#include "sinew/contact/touching.h"
+#include "sinew/contact/time_of_impact.h"
 
 namespace sinew {
 namespace {
@@ -14,7 +14,7 @@ constexpr double end_share = 0.05;
 
 }  // namespace
 
-double Touching::edge_size(Index edge) const {
+double NarrowPhase::edge_size(Index edge) const {
   double size = std::numeric_limits<double>::infinity();
   for (const Index t : surface_.edge_triangles[uz(edge)]) {
     if (t >= 0) size = std::min(size, surface_.triangle_size[uz(t)]);
@@ -22,23 +22,23 @@ double Touching::edge_size(Index edge) const {
   return size;
 }
 
-double Touching::edge_range(Index edge, Index owner, double reach) const {
+double NarrowPhase::edge_range(Index edge, Index owner, double reach) const {
   return std::max(reach, depth_share * std::min(edge_size(edge), largest_size_[uz(owner)]));
 }
 
-double Touching::rest_distance(const Edge& a, const Edge& b) const {
+double NarrowPhase::rest_distance(const Edge& a, const Edge& b) const {
   return segments_distance(rest_[uz(a[0])], rest_[uz(a[1])], rest_[uz(b[0])], rest_[uz(b[1])]);
 }
 
-bool Touching::edges_apart(Index a, Index b, double distance) const {
+bool NarrowPhase::edges_apart(Index a, Index b, double distance) const {
   return distance >= self_share * rest_distance(surface_.edges[uz(a)], surface_.edges[uz(b)]);
 }
 
 // Whether the surface around an edge lies behind the plane through it with normal n, at a moment of
 // the step: n is then one of the normals at which the edge can be touched. `slack`: the sine of the
 // angle by which it may rise above.
-bool Touching::supports(Index edge, const Vec3& n, const Moves& m, double moment,
-                        double slack) const {
+bool NarrowPhase::supports(Index edge, const Vec3& n, const Moves& m, double moment,
+                           double slack) const {
   const Edge& e = surface_.edges[uz(edge)];
   const auto at = [&](Index i) { return between(m.from[uz(i)], m.to[uz(i)], moment); };
   const Vec3 a = at(e[0]);
@@ -59,7 +59,7 @@ bool Touching::supports(Index edge, const Vec3& n, const Moves& m, double moment
   return n.dot(out) > 0.0;
 }
 
-bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Contact& c) const {
+bool NarrowPhase::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Contact& c) const {
   const Edge &a = surface_.edges[uz(ea)], &b = surface_.edges[uz(eb)];
   const auto& x = moves.to;
   const OnLines on = nearest_on_lines(x[uz(a[0])], x[uz(a[1])], x[uz(b[0])], x[uz(b[1])]);
@@ -108,7 +108,7 @@ bool Touching::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Co
     for (const Index j : b) motion = std::max(motion, (move(i) - move(j)).squaredNorm());
   }
   if (!(motion > calm_share * calm_share * size * size)) return false;
-  const Meeting hit = edge_meets_edge(motion_of(a[0], a[1], b[0], b[1], moves.from, moves.to));
+  const TimeOfImpact hit = impact_of_edges(motion_of(a[0], a[1], b[0], b[1], moves.from, moves.to));
   if (!hit.met || (self && rest_distance(a, b) == 0.0)) return false;
   if (!supports(eb, hit.normal, moves, hit.moment, 0.25)) return false;
   if (!supports(ea, -hit.normal, moves, hit.moment, 0.25)) return false;

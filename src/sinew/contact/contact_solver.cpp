@@ -1,4 +1,4 @@
-#include "sinew/contact/respond.h"
+#include "sinew/contact/contact_solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -315,9 +315,9 @@ double move_nodes(const Model& model, const std::vector<Vec3>& force, double kic
 
 }  // namespace
 
-ContactReport respond_to_contacts(const Model& model, const std::vector<Contact>& contacts,
-                                  const std::vector<Vec3>& force, double h, State& state,
-                                  ContactScratch& s) {
+ContactReport solve_contacts(const Model& model, const std::vector<Contact>& contacts,
+                             const std::vector<Vec3>& force, double h, State& state,
+                             ContactScratch& s) {
   ContactReport report;
   std::vector<ContactPush>& pushes = state.reactions.contacts;
   find_impacts(model, contacts, force, h, state, s);

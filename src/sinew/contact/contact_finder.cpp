@@ -1,4 +1,4 @@
-#include "sinew/contact/find.h"
+#include "sinew/contact/contact_finder.h"
 
 #include <algorithm>
 #include <cmath>

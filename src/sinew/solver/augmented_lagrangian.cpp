@@ -17,8 +17,9 @@ constexpr double stiffer = 4.0;
 
 }  // namespace
 
-NewtonReport minimise_within(const Objective& objective, LinearSolver& linear,
-                             const NewtonOptions& options, Workspace& workspace, State& state) {
+NewtonReport minimise_augmented_lagrangian(const Objective& objective, LinearSolver& linear,
+                                           const NewtonOptions& options, Workspace& workspace,
+                                           State& state) {
   if (objective.constraints == nullptr) {
     return minimise(objective, linear, options, workspace, state);
   }

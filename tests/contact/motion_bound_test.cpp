@@ -1,4 +1,4 @@
-#include "sinew/contact/track.h"
+#include "sinew/contact/motion_bound.h"
 
 #include <gtest/gtest.h>
 
@@ -38,17 +38,17 @@ struct Clusters {
   }
 };
 
-TEST(RigidTrack, BoundsHowFarDistancesHaveChanged) {
+TEST(RigidMotionBound, BoundsHowFarDistancesHaveChanged) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     Clusters c(seed);
-    const Track whole({0}, c.x);
-    RigidTrack p(c.p, c.x), q(c.q, c.x);
+    const MotionBound whole({0}, c.x);
+    RigidMotionBound p(c.p, c.x), q(c.q, c.x);
     double largest_share = 0.0;
     for (int n = 0; n < 3; ++n) {
       const std::vector<Vec3> then = c.x;
       p.look({then, then}, whole, false);
       q.look({then, then}, whole, false);
-      const RigidTrack::Mark p_mark = p.mark(), q_mark = q.mark();
+      const RigidMotionBound::Mark p_mark = p.mark(), q_mark = q.mark();
       for (int k = 0; k < 6; ++k) {
         const std::vector<Vec3> from = c.x;
         c.move(0.02, 0.0005, 0.0001);
@@ -80,13 +80,13 @@ TEST(RigidTrack, BoundsHowFarDistancesHaveChanged) {
   }
 }
 
-TEST(RigidTrack, WhatMovesAndTurnsTogetherDoesNotCount) {
+TEST(RigidMotionBound, WhatMovesAndTurnsTogetherDoesNotCount) {
   Clusters c(1);
-  const Track whole({0}, c.x);
-  RigidTrack p(c.p, c.x), q(c.q, c.x);
+  const MotionBound whole({0}, c.x);
+  RigidMotionBound p(c.p, c.x), q(c.q, c.x);
   p.look({c.x, c.x}, whole, false);
   q.look({c.x, c.x}, whole, false);
-  const RigidTrack::Mark p_mark = p.mark(), q_mark = q.mark();
+  const RigidMotionBound::Mark p_mark = p.mark(), q_mark = q.mark();
   for (int k = 0; k < 5; ++k) {
     const std::vector<Vec3> from = c.x;
     c.move(0.0, 0.0, 0.0);
@@ -96,13 +96,13 @@ TEST(RigidTrack, WhatMovesAndTurnsTogetherDoesNotCount) {
   EXPECT_LT(changed_since(p, p_mark, q, q_mark), 1e-4);
 }
 
-TEST(Track, BoundsHowFarNodesMoveAgainstEachOther) {
+TEST(MotionBound, BoundsHowFarNodesMoveAgainstEachOther) {
   Clusters c(2);
-  Track p(c.p, c.x), q(c.q, c.x);
+  MotionBound p(c.p, c.x), q(c.q, c.x);
   std::vector<Vec3> then = c.x;
   p.look({then, then});
   q.look({then, then});
-  const Track::Mark p_mark = p.mark(), q_mark = q.mark();
+  const MotionBound::Mark p_mark = p.mark(), q_mark = q.mark();
   for (int k = 0; k < 6; ++k) {
     const std::vector<Vec3> from = c.x;
     const Vec3 both = c.vec(0.1);

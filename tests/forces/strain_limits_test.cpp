@@ -1,4 +1,4 @@
-#include "sinew/forces/limits.h"
+#include "sinew/forces/strain_limits.h"
 
 #include <gtest/gtest.h>
 

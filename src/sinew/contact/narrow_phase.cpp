@@ -1,9 +1,9 @@
-#include "sinew/contact/touching.h"
+#include "sinew/contact/narrow_phase.h"
 
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/contact/meeting.h"
+#include "sinew/contact/time_of_impact.h"
 
 namespace sinew {
 namespace {
@@ -28,7 +28,7 @@ double relative_motion(Index p, const Triangle& t, const Moves& m) {
 
 }  // namespace
 
-Touching::Touching(const Model& model)
+NarrowPhase::NarrowPhase(const Model& model)
     : surface_(model.surface), rest_(model.rest_position), rim_(model.rest_position.size(), 0) {
   if (model.touch) {
     friction_ = model.touch->friction;
@@ -79,16 +79,16 @@ Touching::Touching(const Model& model)
   }
 }
 
-double Touching::node_range(Index slot, Index owner, double reach) const {
+double NarrowPhase::node_range(Index slot, Index owner, double reach) const {
   return std::max(reach,
                   depth_share * std::min(surface_.node_size[uz(slot)], largest_size_[uz(owner)]));
 }
 
-double Touching::rest_distance(Index node, const Triangle& t) const {
+double NarrowPhase::rest_distance(Index node, const Triangle& t) const {
   return std::sqrt(nearest_on(rest_[uz(node)], rest_, t).distance2);
 }
 
-bool Touching::on_boundary(Index t, const OnTriangle& on) const {
+bool NarrowPhase::on_boundary(Index t, const OnTriangle& on) const {
   const Triangle& tri = surface_.triangles[uz(t)];
   for (std::size_t c = 0; c < 3; ++c) {
     if (on.weight[c] == 1.0) return rim_[uz(tri[c])] != 0;
@@ -99,13 +99,13 @@ bool Touching::on_boundary(Index t, const OnTriangle& on) const {
   return false;
 }
 
-bool Touching::adjoin(Index slot, const Triangle& t) const {
+bool NarrowPhase::adjoin(Index slot, const Triangle& t) const {
   const auto near = neighbours(slot);
   return std::any_of(t.begin(), t.end(),
                      [&](Index i) { return std::find(near.begin(), near.end(), i) != near.end(); });
 }
 
-bool Touching::adjoin(const Edge& a, const Edge& b) const {
+bool NarrowPhase::adjoin(const Edge& a, const Edge& b) const {
   return std::any_of(a.begin(), a.end(), [&](Index i) {
     const auto near = neighbours(slot_of(i));
     return std::find(near.begin(), near.end(), b[0]) != near.end() ||
@@ -114,26 +114,26 @@ bool Touching::adjoin(const Edge& a, const Edge& b) const {
 }
 
 // The two sides of a slit: at rest they face each other over a gap, not over material.
-bool Touching::slit(Index slot, Index t, double apart) const {
+bool NarrowPhase::slit(Index slot, Index t, double apart) const {
   const Vec3& n = rest_plane_[uz(t)].normal;
   if (!(rest_normal_[uz(slot)].dot(n) < -0.5)) return false;
   const Vec3& a = rest_[uz(surface_.triangles[uz(t)][0])];
   return n.dot(rest_[uz(surface_.nodes[uz(slot)])] - a) > 0.5 * apart;
 }
 
-bool Touching::node_apart(Index slot, Index t, double distance) const {
+bool NarrowPhase::node_apart(Index slot, Index t, double distance) const {
   const double apart = rest_distance(surface_.nodes[uz(slot)], surface_.triangles[uz(t)]);
   return distance >= self_share * apart && !slit(slot, t, apart);
 }
 
-double Touching::calm_motion(Index a, Index b) const {
+double NarrowPhase::calm_motion(Index a, Index b) const {
   return calm_share * std::min(smallest_size_[uz(a)], smallest_size_[uz(b)]);
 }
 
 // Whether a node and a triangle of one body, now near each other, have come together from
 // elsewhere, rather than being neighbours, or opposite sides of the same piece of material.
-bool Touching::self_pair_counts(Index slot, Index t, const OnTriangle& on, double side,
-                                const std::vector<Vec3>& from) const {
+bool NarrowPhase::self_pair_counts(Index slot, Index t, const OnTriangle& on, double side,
+                                   const std::vector<Vec3>& from) const {
   const Index node = surface_.nodes[uz(slot)];
   const Triangle& tri = surface_.triangles[uz(t)];
   if (adjoin(slot, tri)) return false;
@@ -151,7 +151,7 @@ bool Touching::self_pair_counts(Index slot, Index t, const OnTriangle& on, doubl
 // Keeps the nearer of two. Where both are at one place, an edge or a corner, that whose plane the
 // node is farther from: on its side the node is of the surface (on a plane's side alone it need not
 // be; Baerentzen and Aanaes 2005 take a mean of the planes for this).
-void Touching::Near::take(const Near& other) {
+void NarrowPhase::Near::take(const Near& other) {
   constexpr double same = 1e-7;
   if (triangle >= 0) {
     if (other.on.distance2 > on.distance2 * (1.0 + same) + 1e-30) return;
@@ -165,9 +165,9 @@ void Touching::Near::take(const Near& other) {
 }
 
 template <typename PlaneOf>
-Touching::Nearest Touching::nearest(Index slot, bool self, const NearTriangles& triangles,
-                                    const PlaneOf& plane_at, const std::vector<Vec3>& x,
-                                    const std::vector<Vec3>& from, double range) const {
+NarrowPhase::Nearest NarrowPhase::nearest(Index slot, bool self, const NearTriangles& triangles,
+                                          const PlaneOf& plane_at, const std::vector<Vec3>& x,
+                                          const std::vector<Vec3>& from, double range) const {
   const Index node = surface_.nodes[uz(slot)];
   const Vec3& p = x[uz(node)];
   Vec3 normal = Vec3::Zero();
@@ -244,8 +244,8 @@ Touching::Nearest Touching::nearest(Index slot, bool self, const NearTriangles& 
 }
 
 // The contact at a place that was found at the end of the step.
-bool Touching::node_contact_of(Index slot, const Near& near, double range, const Moves& moves,
-                               Contact& c) const {
+bool NarrowPhase::node_contact_of(Index slot, const Near& near, double range, const Moves& moves,
+                                  Contact& c) const {
   const Triangle& tri = surface_.triangles[uz(near.triangle)];
   const Vec3 r = moves.to[uz(surface_.nodes[uz(slot)])] - near.on.point;
   const double distance = near.distance();
@@ -261,9 +261,9 @@ bool Touching::node_contact_of(Index slot, const Near& near, double range, const
   return true;
 }
 
-NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& triangles,
-                                 std::span<const Plane> planes, bool calm, const Moves& moves,
-                                 Contact& c) const {
+NodeTouch NarrowPhase::node_touches(Index slot, Index owner, const NearTriangles& triangles,
+                                    std::span<const Plane> planes, bool calm, const Moves& moves,
+                                    Contact& c) const {
   const Index node = surface_.nodes[uz(slot)];
   const bool self = surface_.owner_nodes[uz(owner)].contains(slot);
   const double range = node_range(slot, owner, moves.reach);
@@ -279,7 +279,7 @@ NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& t
   c.weight[0] = 1.0;
 
   // On the way.
-  Meeting hit;
+  Impact hit;
   Index hit_triangle = -1;
   const auto fast = [&](Index t) {
     return relative_motion(node, surface_.triangles[uz(t)], moves) >
@@ -297,8 +297,8 @@ NodeTouch Touching::node_touches(Index slot, Index owner, const NearTriangles& t
         const Triangle& tri = surface_.triangles[uz(t)];
         if (!fast(t)) continue;
         if (self && (adjoin(slot, tri) || rest_distance(node, tri) == 0.0)) continue;
-        const Meeting m =
-            node_meets_triangle(motion_of(node, tri[0], tri[1], tri[2], moves.from, moves.to));
+        const Impact m =
+            impact_of_node(motion_of(node, tri[0], tri[1], tri[2], moves.from, moves.to));
         if (!m.met ||
             (hit.met && (hit.moment < m.moment || (hit.moment == m.moment && hit_triangle < t)))) {
           continue;

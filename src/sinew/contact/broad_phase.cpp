@@ -1,4 +1,4 @@
-#include "sinew/contact/near_parts.h"
+#include "sinew/contact/broad_phase.h"
 
 #include <algorithm>
 #include <cmath>
@@ -20,7 +20,7 @@ Box box_of(const Vec3& x) {
 }
 
 // Appends what is near a key, nearest first.
-void close_key(std::vector<std::pair<float, Index>>& near, Index key, NearList& list) {
+void close_key(std::vector<std::pair<float, Index>>& near, Index key, NeighbourList& list) {
   if (near.empty()) return;
   std::sort(near.begin(), near.end());
   for (const auto& [far, item] : near) {
@@ -33,14 +33,14 @@ void close_key(std::vector<std::pair<float, Index>>& near, Index key, NearList& 
 
 }  // namespace
 
-void NearList::clear() {
+void NeighbourList::clear() {
   key.clear();
   item.clear();
   far.clear();
   start.assign(1, 0);
 }
 
-std::vector<SurfacePart> parts_of(Index owner, const Touching& touching,
+std::vector<SurfacePart> parts_of(Index owner, const NarrowPhase& touching,
                                   const std::vector<Vec3>& rest) {
   const TouchSurface& s = touching.surface();
   const Range triangles = s.owner_triangles[uz(owner)];
@@ -66,7 +66,7 @@ std::vector<SurfacePart> parts_of(Index owner, const Touching& touching,
     }
     std::sort(nodes.begin(), nodes.end());
     nodes.erase(std::unique(nodes.begin(), nodes.end()), nodes.end());
-    part.track = RigidTrack(nodes, rest);
+    part.track = RigidMotionBound(nodes, rest);
   }
   const Range slots = s.owner_nodes[uz(owner)];
   for (Index slot = slots.begin; slot < slots.end; ++slot) {
@@ -83,7 +83,7 @@ std::vector<SurfacePart> parts_of(Index owner, const Touching& touching,
   return parts;
 }
 
-void fit_boxes(SurfacePart& part, const Touching& touching, const std::vector<Vec3>& to) {
+void fit_boxes(SurfacePart& part, const NarrowPhase& touching, const std::vector<Vec3>& to) {
   const TouchSurface& s = touching.surface();
   part.triangle_boxes.clear();
   for (const Index t : part.triangles) {
@@ -104,16 +104,17 @@ void fit_boxes(SurfacePart& part, const Touching& touching, const std::vector<Ve
 
 // Marks the nodes that are neighbours of the node, next to those that are marked.
 void NearFinder::mark_neighbours(Index slot, Scratch& scratch) const {
-  for (const Index i : touching_.neighbours(slot)) scratch.mark[uz(i)] = scratch.now;
+  for (const Index i : narrow_phase_.neighbours(slot)) scratch.mark[uz(i)] = scratch.now;
 }
 
-void NearFinder::list_nodes(const Search& search, Scratch& scratch, NearList& list) const {
-  const TouchSurface& s = touching_.surface();
+void NearFinder::list_nodes(const Search& search, Scratch& scratch, NeighbourList& list) const {
+  const TouchSurface& s = narrow_phase_.surface();
   const auto& x = search.moves.to;
   const auto marked = [&](Index i) { return scratch.mark[uz(i)] == scratch.now; };
   for (const Index slot : search.part.nodes) {
     const Vec3& p = x[uz(s.nodes[uz(slot)])];
-    const double range = touching_.node_range(slot, search.owner, search.moves.reach) + search.more;
+    const double range =
+        narrow_phase_.node_range(slot, search.owner, search.moves.reach) + search.more;
     scratch.triangles.find(box_of(p).grown(range), scratch.found);
     if (scratch.found.empty()) continue;
     ++scratch.now;
@@ -127,7 +128,7 @@ void NearFinder::list_nodes(const Search& search, Scratch& scratch, NearList& li
         distance = std::sqrt(
             nearest_on_triangle(p, x[uz(tri[0])], x[uz(tri[1])], x[uz(tri[2])]).distance2);
         if (distance > range) continue;
-        if (search.self && touching_.node_apart(slot, t, distance - search.more)) continue;
+        if (search.self && narrow_phase_.node_apart(slot, t, distance - search.more)) continue;
       }
       scratch.near.emplace_back(rounded_down(distance), t);
     }
@@ -135,18 +136,19 @@ void NearFinder::list_nodes(const Search& search, Scratch& scratch, NearList& li
   }
 }
 
-void NearFinder::list_edges(const Search& search, Scratch& scratch, NearList& list) const {
-  const TouchSurface& s = touching_.surface();
+void NearFinder::list_edges(const Search& search, Scratch& scratch, NeighbourList& list) const {
+  const TouchSurface& s = narrow_phase_.surface();
   const auto& x = search.moves.to;
   const auto marked = [&](Index i) { return scratch.mark[uz(i)] == scratch.now; };
   for (const Index e : search.part.edges) {
     const Edge& edge = s.edges[uz(e)];
-    const double range = touching_.edge_range(e, search.owner, search.moves.reach) + search.more;
+    const double range =
+        narrow_phase_.edge_range(e, search.owner, search.moves.reach) + search.more;
     const Box box = box_around(edge, x).grown(range);
     ++scratch.now;
     if (search.self) {
-      mark_neighbours(touching_.slot_of(edge[0]), scratch);
-      mark_neighbours(touching_.slot_of(edge[1]), scratch);
+      mark_neighbours(narrow_phase_.slot_of(edge[0]), scratch);
+      mark_neighbours(narrow_phase_.slot_of(edge[1]), scratch);
     }
     scratch.near.clear();
     const auto look_at = [&](const Boxes& boxes) {
@@ -158,13 +160,13 @@ void NearFinder::list_edges(const Search& search, Scratch& scratch, NearList& li
         if (!search.swept) {
           distance = segments_distance(x[uz(edge[0])], x[uz(edge[1])], x[uz(o[0])], x[uz(o[1])]);
           if (distance > range) continue;
-          if (search.self && touching_.edges_apart(e, other, distance - search.more)) continue;
+          if (search.self && narrow_phase_.edges_apart(e, other, distance - search.more)) continue;
         }
         scratch.near.emplace_back(rounded_down(distance), other);
       }
     };
     look_at(scratch.sharp_edges);
-    if (touching_.is_sharp(e, search.self)) look_at(scratch.other_edges);
+    if (narrow_phase_.is_sharp(e, search.self)) look_at(scratch.other_edges);
     close_key(scratch.near, e, list);
   }
 }
@@ -184,11 +186,11 @@ void NearFinder::make(NearPart& near, double more, bool swept, const Moves& move
   }
   double range = 0.0;
   for (const Index slot : part.nodes) {
-    range = std::max(range, touching_.node_range(slot, near.owner, moves.reach));
+    range = std::max(range, narrow_phase_.node_range(slot, near.owner, moves.reach));
   }
   if (with_edges) {
     for (const Index e : part.edges) {
-      range = std::max(range, touching_.edge_range(e, near.owner, moves.reach));
+      range = std::max(range, narrow_phase_.edge_range(e, near.owner, moves.reach));
     }
   }
   const Box around = part.track.end_box().grown(range + more);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sinew/contact/contact.h"
-#include "sinew/contact/rebound.h"
+#include "sinew/contact/restitution.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
@@ -21,7 +21,7 @@ struct ContactReport {
   double deepest = 0.0;     // [m] the deepest place that is left inside
 };
 
-// Scratch of respond_to_contacts(): holds nothing that the next step could not compute again.
+// Scratch of solve_contacts(): holds nothing that the next step could not compute again.
 struct ContactScratch {
   // A contact and its impulses so far. "Along" is along the normal. Slots are into `velocity`;
   // those that are not used are 0, which is nobody's and has no weight.
@@ -63,18 +63,18 @@ struct ContactScratch {
 // step [N] (nodes), `contacts` are those of the predicted positions, sorted by comes_before().
 //
 // Every contact gets the impulse with which its gap does not end below 0, or the one of its rebound
-// (contact/rebound.h), and at most mu times that along the plane, against the sliding. Positions
-// follow velocities, as those of constraints do in Verlet's method (SHAKE: Ryckaert, Ciccotti and
-// Berendsen 1977), so that what a contact does to the energy is what its impulse does. Contacts
-// that share nodes are taken in turn, in their order, with their impulses so far (Gauss and
-// Seidel), until what is left is small; those with a gap above 0 take part where the others would
-// close it. They begin with what they pushed with in the step before, state.reactions.contacts,
-// which this one leaves there for the next. The impulses of a contact between bodies add up to
-// zero: momentum is kept to rounding.
+// (contact/restitution.h), and at most mu times that along the plane, against the sliding.
+// Positions follow velocities, as those of constraints do in Verlet's method (SHAKE: Ryckaert,
+// Ciccotti and Berendsen 1977), so that what a contact does to the energy is what its impulse does.
+// Contacts that share nodes are taken in turn, in their order, with their impulses so far (Gauss
+// and Seidel), until what is left is small; those with a gap above 0 take part where the others
+// would close it. They begin with what they pushed with in the step before,
+// state.reactions.contacts, which this one leaves there for the next. The impulses of a contact
+// between bodies add up to zero: momentum is kept to rounding.
 //
 // Adds what every collider is pushed with to state.obstacle_force.
-ContactReport respond_to_contacts(const Model& model, const std::vector<Contact>& contacts,
-                                  const std::vector<Vec3>& force, double h, State& state,
-                                  ContactScratch& scratch);
+ContactReport solve_contacts(const Model& model, const std::vector<Contact>& contacts,
+                             const std::vector<Vec3>& force, double h, State& state,
+                             ContactScratch& scratch);
 
 }  // namespace sinew

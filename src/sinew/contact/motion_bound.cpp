@@ -1,4 +1,4 @@
-#include "sinew/contact/track.h"
+#include "sinew/contact/motion_bound.h"
 
 #include <algorithm>
 #include <array>
@@ -49,14 +49,15 @@ Mat3 turned_towards(const Mat3& a, Mat3 r) {
 
 }  // namespace
 
-Track::Track(std::vector<Index> nodes, const std::vector<Vec3>& x) : nodes_(std::move(nodes)) {
+MotionBound::MotionBound(std::vector<Index> nodes, const std::vector<Vec3>& x)
+    : nodes_(std::move(nodes)) {
   for (const Index i : nodes_) {
     reference_.push_back(x[uz(i)]);
     reference_box_.add(x[uz(i)]);
   }
 }
 
-void Track::look(const Moves& moves) {
+void MotionBound::look(const Moves& moves) {
   if (nodes_.empty()) return;
   Extent since, step;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -72,7 +73,7 @@ void Track::look(const Moves& moves) {
   step_ = step.spread();
 }
 
-void Track::renew(const Moves& moves) {
+void MotionBound::renew(const Moves& moves) {
   travel_ += since_.shift();
   drift_ += since_.off();
   reference_box_ = {};
@@ -83,7 +84,7 @@ void Track::renew(const Moves& moves) {
   since_ = {};
 }
 
-Box Track::box() const {
+Box MotionBound::box() const {
   Box box = end_box();
   box.lo -= step_.hi.cwiseMax(Vec3::Zero());
   box.hi -= step_.lo.cwiseMin(Vec3::Zero());
@@ -92,15 +93,15 @@ Box Track::box() const {
 
 // A way since the mark is that from the present reference, plus those between references, less that
 // at the mark; each is its shift, give or take its off.
-double moved_since(const Track& p, const Track::Mark& p_mark, const Track& q,
-                   const Track::Mark& q_mark) {
+double moved_since(const MotionBound& p, const MotionBound::Mark& p_mark, const MotionBound& q,
+                   const MotionBound::Mark& q_mark) {
   const Vec3 way =
       (p.travel_ + p.since_.shift() - p_mark.way) - (q.travel_ + q.since_.shift() - q_mark.way);
   return 1.000001 * (way.norm() + (p.drift_ + p.since_.off() - p_mark.drift) +
                      (q.drift_ + q.since_.off() - q_mark.drift));
 }
 
-RigidTrack::RigidTrack(std::vector<Index> nodes, const std::vector<Vec3>& x)
+RigidMotionBound::RigidMotionBound(std::vector<Index> nodes, const std::vector<Vec3>& x)
     : nodes_(std::move(nodes)) {
   for (const Index i : nodes_) {
     reference_.push_back(x[uz(i)]);
@@ -108,7 +109,7 @@ RigidTrack::RigidTrack(std::vector<Index> nodes, const std::vector<Vec3>& x)
   }
 }
 
-void RigidTrack::look(const Moves& moves, const Track& whole, bool slow) {
+void RigidMotionBound::look(const Moves& moves, const MotionBound& whole, bool slow) {
   Extent box, step;
   for (const Index i : nodes_) {
     const double* a = moves.from[uz(i)].data();
@@ -146,7 +147,7 @@ void RigidTrack::look(const Moves& moves, const Track& whole, bool slow) {
   off_ = std::sqrt(off2);
 }
 
-void RigidTrack::renew(const Moves& moves) {
+void RigidMotionBound::renew(const Moves& moves) {
   travel_ = whole_way();
   drift_ += off_;
   for (std::size_t i = 0; i < nodes_.size(); ++i) reference_[i] = moves.to[uz(nodes_[i])];
@@ -154,7 +155,7 @@ void RigidTrack::renew(const Moves& moves) {
   off_ = 0.0;
 }
 
-RigidTrack::Mark RigidTrack::mark() const {
+RigidMotionBound::Mark RigidMotionBound::mark() const {
   return {whole_way(), drift_ - off_, 0.5 * (box_.lo + box_.hi), 0.5 * (box_.hi - box_.lo).norm()};
 }
 
@@ -162,14 +163,14 @@ RigidTrack::Mark RigidTrack::mark() const {
 // give or take. P keeps distances, so theirs has changed by no more than |Q x_q - P x_q|, which is
 // no more than that at the centre of a ball that holds x_q, plus its radius times the norm of the
 // difference of the rotations: of its three singular values two are the same and one is 0.
-double changed_since(const RigidTrack& p, const RigidTrack::Mark& p_mark, const RigidTrack& q,
-                     const RigidTrack::Mark& q_mark) {
+double changed_since(const RigidMotionBound& p, const RigidMotionBound::Mark& p_mark,
+                     const RigidMotionBound& q, const RigidMotionBound::Mark& q_mark) {
   const double off = (p.drift_ + p.off_ - p_mark.drift) + (q.drift_ + q.off_ - q_mark.drift);
   if (&p == &q) return 1.000001 * off;
   const Rigid p_way = p.whole_way().after(p_mark.way.inverse());
   const Rigid q_way = q.whole_way().after(q_mark.way.inverse());
   const double turn = (q_way.r - p_way.r).norm() / std::sqrt(2.0);
-  const auto at = [&](const RigidTrack::Mark& mark) {
+  const auto at = [&](const RigidMotionBound::Mark& mark) {
     return (q_way(mark.centre) - p_way(mark.centre)).norm() + turn * mark.radius;
   };
   return 1.000001 * (std::min(at(p_mark), at(q_mark)) + off);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "sinew/contact/box_tree.h"
-#include "sinew/contact/touching.h"
+#include "sinew/contact/narrow_phase.h"
 
 namespace sinew {
 
@@ -23,7 +23,7 @@ inline double apart(const Spread& a, const Spread& b) {
 }
 
 // The nodes of a surface, seen as moving together, give or take: cheap enough for every step.
-class Track {
+class MotionBound {
  public:
   // Where the nodes were at a moment.
   struct Mark {
@@ -31,8 +31,8 @@ class Track {
     double drift = 0.0;
   };
 
-  Track() = default;
-  Track(std::vector<Index> nodes, const std::vector<Vec3>& x);
+  MotionBound() = default;
+  MotionBound(std::vector<Index> nodes, const std::vector<Vec3>& x);
 
   // Looks at the nodes at the end of a step, and at their ways in it.
   void look(const Moves& moves);
@@ -48,7 +48,8 @@ class Track {
 
   // At most so far [m] has a node of p moved against one of q from the marks to the end of the
   // step. p may be q.
-  friend double moved_since(const Track& p, const Mark& p_mark, const Track& q, const Mark& q_mark);
+  friend double moved_since(const MotionBound& p, const Mark& p_mark, const MotionBound& q,
+                            const Mark& q_mark);
 
  private:
   std::vector<Index> nodes_;
@@ -59,8 +60,8 @@ class Track {
   Spread since_, step_;
 };
 
-double moved_since(const Track& p, const Track::Mark& p_mark, const Track& q,
-                   const Track::Mark& q_mark);
+double moved_since(const MotionBound& p, const MotionBound::Mark& p_mark, const MotionBound& q,
+                   const MotionBound::Mark& q_mark);
 
 // x -> r x + t, with r a rotation.
 struct Rigid {
@@ -72,7 +73,7 @@ struct Rigid {
 };
 
 // The nodes of a part of a surface, seen as a rigid body that moves and turns, give or take.
-class RigidTrack {
+class RigidMotionBound {
  public:
   // Where the part was at a moment.
   struct Mark {
@@ -82,12 +83,12 @@ class RigidTrack {
     double radius = 0.0;         // [m]
   };
 
-  RigidTrack() = default;
-  RigidTrack(std::vector<Index> nodes, const std::vector<Vec3>& x);
+  RigidMotionBound() = default;
+  RigidMotionBound(std::vector<Index> nodes, const std::vector<Vec3>& x);
 
   // Looks at the nodes at the end of a step. `slow`: their ways in it are taken to be anywhere
   // among those of the whole surface.
-  void look(const Moves& moves, const Track& whole, bool slow);
+  void look(const Moves& moves, const MotionBound& whole, bool slow);
   // Makes the end of that step the shape that the part is compared with.
   void renew(const Moves& moves);
 
@@ -98,8 +99,8 @@ class RigidTrack {
 
   // By at most so much have distances of nodes of p from places between nodes of q changed from the
   // marks to the end of the step [m]. p may be q.
-  friend double changed_since(const RigidTrack& p, const Mark& p_mark, const RigidTrack& q,
-                              const Mark& q_mark);
+  friend double changed_since(const RigidMotionBound& p, const Mark& p_mark,
+                              const RigidMotionBound& q, const Mark& q_mark);
 
  private:
   Rigid whole_way() const { return way_.after(travel_); }
@@ -115,7 +116,7 @@ class RigidTrack {
   Spread step_;
 };
 
-double changed_since(const RigidTrack& p, const RigidTrack::Mark& p_mark, const RigidTrack& q,
-                     const RigidTrack::Mark& q_mark);
+double changed_since(const RigidMotionBound& p, const RigidMotionBound::Mark& p_mark,
+                     const RigidMotionBound& q, const RigidMotionBound::Mark& q_mark);
 
 }  // namespace sinew

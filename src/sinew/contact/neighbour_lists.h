@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "sinew/contact/near_parts.h"
-#include "sinew/contact/touching.h"
+#include "sinew/contact/broad_phase.h"
+#include "sinew/contact/narrow_phase.h"
 
 namespace sinew {
 
@@ -26,16 +26,16 @@ struct NearPair {
   bool checked = false;
   double slack = 0.0;  // [m]
   double reach = 0.0;  // then [m]
-  Track::Mark a_mark, b_mark;
+  MotionBound::Mark a_mark, b_mark;
 };
 
-class NearLists {
+class NeighbourLists {
  public:
-  NearLists(const Model& model, const Touching& touching);
-  ~NearLists();
+  NeighbourLists(const Model& model, const NarrowPhase& touching);
+  ~NeighbourLists();
 
   // The pairs of owners that may touch in this step, with lists that hold every node with every
-  // triangle, and every edge with every edge, that come within the range of Touching in it.
+  // triangle, and every edge with every edge, that come within the range of NarrowPhase in it.
   const std::vector<const NearPair*>& update(const Moves& moves);
 
   // How many parts got new lists so far, for tests and measurements.
@@ -45,7 +45,7 @@ class NearLists {
  private:
   struct Owner {
     Range parts;
-    Track track;
+    MotionBound track;
     double size = 0.0;    // mean of its triangles [m]
     double range = 0.0;   // the largest range of its nodes and edges, but for reach [m]
     bool looked = false;  // its parts' tracks are of this step
@@ -64,7 +64,7 @@ class NearLists {
   double build(const std::vector<NearPart*>& stale, double skin, const Moves& moves);
   void collect(NearPair& pair);
 
-  const Touching& touching_;
+  const NarrowPhase& narrow_phase_;
   std::vector<SurfacePart> parts_;  // owner by owner
   std::vector<Owner> owners_;
   std::vector<NearPair> pairs_;  // all that may touch at all, by a, then b

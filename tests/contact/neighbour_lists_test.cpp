@@ -1,4 +1,4 @@
-#include "sinew/contact/near_lists.h"
+#include "sinew/contact/neighbour_lists.h"
 
 #include <gtest/gtest.h>
 
@@ -14,11 +14,11 @@ namespace {
 using testing::contacts_of;
 using testing::moved;
 using testing::random_rotation;
-using testing::touching_model;
+using testing::surface_pair_model;
 
 // Every node with every triangle, every edge with every edge.
 std::vector<Contact> all_pairs(const Model& model, const Moves& moves) {
-  const Touching touching(model);
+  const NarrowPhase touching(model);
   const TouchSurface& s = touching.surface();
   std::vector<Plane> planes;
   for (const Triangle& t : s.triangles) planes.push_back(plane_of(moves.to, t));
@@ -113,10 +113,10 @@ Model crowd(unsigned seed) {
                                  box(Vec3(0.15, 0.15, 0.004), {6, 6, 1}),
                                  beam(Vec3(0.03, 0.03, 0.15), {1, 1, 5}, 0.2)};
   for (TetMesh& m : meshes) m = moved(m, random_rotation(rng), Vec3(u(rng), u(rng), u(rng)));
-  return touching_model(meshes);
+  return surface_pair_model(meshes);
 }
 
-TEST(NearLists, FindWhatAllPairsGive) {
+TEST(NeighbourLists, FindWhatAllPairsGive) {
   std::size_t contacts = 0, edges = 0, on_the_way = 0;
 #ifdef SINEW_SANITIZED
   const unsigned seeds = 2;  // all pairs take a hundred times longer there
@@ -158,9 +158,9 @@ TEST(NearLists, FindWhatAllPairsGive) {
   EXPECT_GT(on_the_way, 2u * seeds);
 }
 
-TEST(NearLists, SameBitsAtOneAndTwoThreads) {
+TEST(NeighbourLists, SameBitsAtOneAndTwoThreads) {
   const TetMesh plate = box(Vec3(0.2, 0.2, 0.01), {30, 30, 1});
-  const Model model = touching_model({plate, moved(plate, Vec3(0.003, 0.002, 0.0101))});
+  const Model model = surface_pair_model({plate, moved(plate, Vec3(0.003, 0.002, 0.0101))});
   const Motion motion(model, 5, 0.1);
   std::vector<std::vector<Contact>> all;
   for (const int threads : {1, 2}) {
@@ -175,10 +175,12 @@ TEST(NearLists, SameBitsAtOneAndTwoThreads) {
   for (std::size_t k = 0; k < 5; ++k) expect_same(all[k], all[k + 5]);
 }
 
-TEST(NearLists, LastWhileBodiesMoveTogetherAndCostNothingFarApart) {
+TEST(NeighbourLists, LastWhileBodiesMoveTogetherAndCostNothingFarApart) {
   const TetMesh cube = box(Vec3(0.1, 0.1, 0.1), {4, 4, 4});
-  const Model model = touching_model({cube, moved(cube, Vec3(0, 0.1, 0))}, {true, true, 0.5, 0.0});
-  const Model apart = touching_model({cube, moved(cube, Vec3(0, 0.3, 0))}, {true, false, 0.5, 0.0});
+  const Model model =
+      surface_pair_model({cube, moved(cube, Vec3(0, 0.1, 0))}, {true, true, 0.5, 0.0});
+  const Model apart =
+      surface_pair_model({cube, moved(cube, Vec3(0, 0.3, 0))}, {true, false, 0.5, 0.0});
   SurfaceContacts contacts(model), far(apart);
   std::vector<Contact> found;
   std::vector<Vec3> x = model.rest_position, y = apart.rest_position;

@@ -1,4 +1,4 @@
-#include "sinew/contact/respond.h"
+#include "sinew/contact/contact_solver.h"
 
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ struct Masses {
     }
     for (Contact& c : contacts) c.gap = contact_gap(c, state.position);
     state.obstacle_force.assign(1, Vec3::Zero());
-    const ContactReport report = respond_to_contacts(model, contacts, force, h, state, scratch);
+    const ContactReport report = solve_contacts(model, contacts, force, h, state, scratch);
     state.last_step = h;
     return report;
   }
@@ -76,7 +76,7 @@ Masses node_and_triangle(const Vec3& velocity, double height = 0.0) {
   return {{x, a, b, c}, {velocity, Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}, {1.0, 2.0, 3.0, 4.0}};
 }
 
-TEST(Respond, NodeAndTriangleKeepTheirMomentum) {
+TEST(ContactSolver, NodeAndTriangleKeepTheirMomentum) {
   Masses m = node_and_triangle(Vec3(0.3, -1.0, 0.2));
   const Vec3 before = m.momentum();
   const double energy = m.kinetic();
@@ -90,7 +90,7 @@ TEST(Respond, NodeAndTriangleKeepTheirMomentum) {
   EXPECT_LE(report.deepest, 1e-15);
 }
 
-TEST(Respond, RestitutionTurnsTheRelativeVelocityRound) {
+TEST(ContactSolver, RestitutionTurnsTheRelativeVelocityRound) {
   Masses m = node_and_triangle(Vec3(0.0, -1.0, 0.0), 2e-4);
   const double energy = m.kinetic();
   const Contact c = node_on_triangle(0.0, 1.0);
@@ -103,7 +103,7 @@ TEST(Respond, RestitutionTurnsTheRelativeVelocityRound) {
   EXPECT_NEAR(contact_gap(c, m.state.position), 0.8 * h, 1e-12);
 }
 
-TEST(Respond, FrictionTakesAtMostMuTimesTheNormalImpulse) {
+TEST(ContactSolver, FrictionTakesAtMostMuTimesTheNormalImpulse) {
   Masses m = node_and_triangle(Vec3(2.0, -1.0, 0.0));
   const Contact c = node_on_triangle(0.25, 0.0);
   const double mass = 1.0 / (1.0 + 0.25 / 2.0 + 0.09 / 3.0 + 0.04 / 4.0);
@@ -114,7 +114,7 @@ TEST(Respond, FrictionTakesAtMostMuTimesTheNormalImpulse) {
   EXPECT_NEAR(impulse.x(), -0.25 * mass, 1e-12);
 }
 
-TEST(Respond, SharedNodesAreSolvedTogether) {
+TEST(ContactSolver, SharedNodesAreSolvedTogether) {
   // A mass in the corner of two planes, and one on its back: three contacts, one answer.
   Masses m({Vec3(0, 0, 0), Vec3(0, 1, 0)}, {Vec3(-1, -2, 0), Vec3(0, -3, 0)}, {1.0, 5.0});
   Contact wall, floor, pair;
@@ -136,7 +136,7 @@ TEST(Respond, SharedNodesAreSolvedTogether) {
   EXPECT_NEAR(report.dissipated, energy - m.kinetic(), 1e-9);
 }
 
-TEST(Respond, CollidersThatMoveDoWorkAndFeelTheForce) {
+TEST(ContactSolver, CollidersThatMoveDoWorkAndFeelTheForce) {
   Masses m({Vec3(0, 0, 0)}, {Vec3(0, 0, 0)}, {2.0});
   m.state.last_step = h;
   Contact c;
@@ -155,7 +155,7 @@ TEST(Respond, CollidersThatMoveDoWorkAndFeelTheForce) {
 }
 
 // Without forces Newton's law of restitution would make energy of these, step by step, without end.
-TEST(Respond, BouncesThatShareNodesMakeNoEnergy) {
+TEST(ContactSolver, BouncesThatShareNodesMakeNoEnergy) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   const auto vec = [&] { return Vec3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5); };
@@ -182,7 +182,7 @@ TEST(Respond, BouncesThatShareNodesMakeNoEnergy) {
   }
 }
 
-TEST(Respond, PinnedNodesStay) {
+TEST(ContactSolver, PinnedNodesStay) {
   Masses m = node_and_triangle(Vec3(0, -1, 0));
   for (const Index i : {1, 2, 3}) m.model.inverse_mass[uz(i)] = 0.0;
   m.step({node_on_triangle(0.5, 0.0)});
@@ -211,7 +211,7 @@ Contact mass_on_plane(double friction, const ContactId& id) {
   return c;
 }
 
-TEST(Respond, BeginsWithWhatItPushedWithInTheStepBefore) {
+TEST(ContactSolver, BeginsWithWhatItPushedWithInTheStepBefore) {
   Masses m = lying_mass();
   EXPECT_GT(m.step({mass_on_plane(0.6, lying)}).sweeps, 1);
   for (int i = 0; i < 3; ++i) {
@@ -226,7 +226,7 @@ TEST(Respond, BeginsWithWhatItPushedWithInTheStepBefore) {
   EXPECT_TRUE(m.state.reactions.contacts.empty());
 }
 
-TEST(Respond, ANodeThatGoesOnToTheNextTriangleKeepsItsPush) {
+TEST(ContactSolver, ANodeThatGoesOnToTheNextTriangleKeepsItsPush) {
   Masses m = lying_mass();
   const auto on = [](Index body, Index triangle) {
     return mass_on_plane(0.6, {ContactKind::node_triangle, body, 5, triangle});
@@ -237,7 +237,7 @@ TEST(Respond, ANodeThatGoesOnToTheNextTriangleKeepsItsPush) {
   EXPECT_GT(m.step({on(2, 9)}).sweeps, 1);  // something else
 }
 
-TEST(Respond, FrictionsConeHoldsWhateverItBeginsWith) {
+TEST(ContactSolver, FrictionsConeHoldsWhateverItBeginsWith) {
   for (const Vec3& stale :
        {Vec3(-500.0, 20.0, 0.0), Vec3(0.0, -30.0, 90.0), Vec3(3.0, 900.0, 2.0)}) {
     Masses m = lying_mass();
@@ -256,7 +256,7 @@ TEST(Respond, FrictionsConeHoldsWhateverItBeginsWith) {
   }
 }
 
-TEST(Respond, RandomTanglesOfContactsKeepMomentumAndNeverAddEnergy) {
+TEST(ContactSolver, RandomTanglesOfContactsKeepMomentumAndNeverAddEnergy) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   const auto vec = [&] { return Vec3(unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5); };

@@ -1,4 +1,4 @@
-#include "sinew/forces/righting.h"
+#include "sinew/forces/inversion_recovery.h"
 
 #include <gtest/gtest.h>
 
@@ -19,7 +19,7 @@ Model free_box() {
   return m;
 }
 
-TEST(Righting, ABodyIsTangledWhenManyTetsAreInsideOut) {
+TEST(InversionRecovery, ABodyIsTangledWhenManyTetsAreInsideOut) {
   const Model m = free_box();
   Workspace workspace(m);
   State state = initial_state(m);
@@ -34,7 +34,7 @@ TEST(Righting, ABodyIsTangledWhenManyTetsAreInsideOut) {
   EXPECT_EQ(workspace.tangled[0], 1);
 }
 
-TEST(Righting, TheRestShapeGoesWhereTheBodyIs) {
+TEST(InversionRecovery, TheRestShapeGoesWhereTheBodyIs) {
   const Model m = free_box();
   const Mat3 turn = Eigen::AngleAxisd(2.0, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   std::vector<Vec3> moved, mirrored;
@@ -50,7 +50,7 @@ TEST(Righting, TheRestShapeGoesWhereTheBodyIs) {
   EXPECT_GT(map.determinant(), 0.0);  // a rotation, not the mirror image
 }
 
-TEST(Righting, TheForcesKeepMomentumAndAngularMomentum) {
+TEST(InversionRecovery, TheForcesKeepMomentumAndAngularMomentum) {
   const Model m = free_box();
   Workspace workspace(m);
   State state = initial_state(m);
@@ -71,7 +71,7 @@ TEST(Righting, TheForcesKeepMomentumAndAngularMomentum) {
 
 // Thrown apart much faster than its waves run, it stays together: nothing leaves by more than
 // about its size.
-TEST(Righting, WhatFliesApartIsCaught) {
+TEST(InversionRecovery, WhatFliesApartIsCaught) {
   Model m = free_box();
   for (double& modulus : m.tet_modulus) modulus *= 1e-6;
   const double size = std::cbrt(m.bodies[0].rest_volume);

@@ -1,4 +1,4 @@
-#include "sinew/contact/meeting.h"
+#include "sinew/contact/time_of_impact.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace sinew {
 namespace {
 
-TEST(Meeting, RootsOfCubicsWithKnownOnes) {
+TEST(Impact, RootsOfCubicsWithKnownOnes) {
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> u(-0.5, 1.5);
   for (int n = 0; n < 2000; ++n) {
@@ -28,7 +28,7 @@ TEST(Meeting, RootsOfCubicsWithKnownOnes) {
   }
 }
 
-TEST(Meeting, ANodeThatIsShotAtAPointOfATriangleThatMoves) {
+TEST(Impact, ANodeThatIsShotAtAPointOfATriangleThatMoves) {
   std::mt19937 rng(2);
   std::uniform_real_distribution<double> u(-1.0, 1.0), share(0.05, 1.0);
   const auto vec = [&] { return Vec3(u(rng), u(rng), u(rng)); };
@@ -48,31 +48,31 @@ TEST(Meeting, ANodeThatIsShotAtAPointOfATriangleThatMoves) {
     const Vec3 way = -5.0 * normal + vec();
     m.p0 = w[0] * a + w[1] * b + w[2] * c - moment * way;
     m.p1 = m.p0 + way;
-    const Meeting hit = node_meets_triangle(m);
+    const Impact hit = impact_of_node(m);
     ASSERT_TRUE(hit.met);
     EXPECT_NEAR(hit.moment, moment, 1e-9);
     EXPECT_NEAR((hit.normal - normal).norm(), 0.0, 1e-7);
     for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(hit.weight[k], w[static_cast<Index>(k)], 1e-7);
     std::swap(m.p0, m.p1);  // backwards it comes out, which is no meeting
     std::swap(m.a0, m.a1), std::swap(m.b0, m.b1), std::swap(m.c0, m.c1);
-    EXPECT_FALSE(node_meets_triangle(m).met);
+    EXPECT_FALSE(impact_of_node(m).met);
     ++met;
   }
   EXPECT_GT(met, 500);
 }
 
-TEST(Meeting, EdgesThatCross) {
+TEST(Impact, EdgesThatCross) {
   NodeAndTriangle m;  // along x, falling from 1 to -1; along z at height 0, at rest
   m.p0 = Vec3(-1, 1, 0), m.a0 = Vec3(1, 1, 0), m.p1 = Vec3(-1, -1, 0), m.a1 = Vec3(1, -1, 0);
   m.b0 = m.b1 = Vec3(0.5, 0, -1), m.c0 = m.c1 = Vec3(0.5, 0, 3);
-  const Meeting hit = edge_meets_edge(m);
+  const Impact hit = impact_of_edges(m);
   ASSERT_TRUE(hit.met);
   EXPECT_NEAR(hit.moment, 0.5, 1e-12);
   EXPECT_NEAR(hit.weight[0], 0.75, 1e-12);
   EXPECT_NEAR(hit.weight[1], 0.25, 1e-12);
   EXPECT_LT((hit.normal - Vec3::UnitY()).norm(), 1e-12);
   m.b0 = m.b1 = Vec3(1.5, 0, -1), m.c0 = m.c1 = Vec3(1.5, 0, 3);
-  EXPECT_FALSE(edge_meets_edge(m).met);
+  EXPECT_FALSE(impact_of_edges(m).met);
 }
 
 }  // namespace

@@ -43,7 +43,7 @@ struct NearTriangles {
 // near: not touching, but within node_range at the end of the step.
 enum class NodeTouch { none, near, touches };
 
-class Touching {
+class NarrowPhase {
  public:
   // How deep a node may be inside and still be led out, as a share of the local size (size of the
   // triangles); how far a pair may move against each other in a step without being followed on the
@@ -58,7 +58,7 @@ class Touching {
   static constexpr double sharp_to_self = 0.6;
   static constexpr double concave = -0.09;
 
-  explicit Touching(const Model& model);
+  explicit NarrowPhase(const Model& model);
 
   // Farther away than this at the end of the step, a node does not touch an owner's surface, but
   // for triangles that it went through on the way.

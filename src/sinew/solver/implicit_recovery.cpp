@@ -3,7 +3,7 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/contact/ground.h"
-#include "sinew/forces/righting.h"
+#include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/solver/implicit.h"
@@ -36,7 +36,7 @@ bool ImplicitStepper::half_righted(const State& led, std::vector<char>& righted)
 }
 
 // Minimising leads into the nearest fold, so the nodes of tangled bodies are given the way that
-// righting pulls them; everything else takes its implicit step beside them.
+// inversion recovery pulls them; everything else takes its implicit step beside them.
 ImplicitReport ImplicitStepper::lead_back(double h, const Controls& controls,
                                           const ImplicitOptions& options, State& state) {
   const double energy = measure_energies(model_, controls, state, workspace_).total();

@@ -13,9 +13,9 @@ namespace sinew {
 // method has little to do, that start anew without velocity whenever the body has passed its
 // fastest (kinetic damping, Cundall 1976). Comes through where a stiff part has to turn far and
 // straight steps go astray. All of the load at once.
-NewtonReport StaticSolver::fall_to_rest(const Controls& controls, double start_time, double time,
-                                        const StaticOptions& options, StaticProgress progress,
-                                        State& state) {
+NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double start_time,
+                                             double time, const StaticOptions& options,
+                                             StaticProgress progress, State& state) {
   constexpr int few = 10;        // Newton steps
   constexpr double near = 1e-4;  // what moves the body still, as a share of the load
   double h = 1.0 / 30.0;         // [s]
@@ -42,7 +42,7 @@ NewtonReport StaticSolver::fall_to_rest(const Controls& controls, double start_t
     constraints_.start(state, nullptr, 0.0);
     state.position = inertial;
     const double tolerance = std::clamp(0.1 * pull, options.tolerance, 1e-3);
-    const NewtonReport step = minimise_within(
+    const NewtonReport step = minimise_augmented_lagrangian(
         objective, linear_, {tolerance, 3 * few, options.stop, {}}, workspace_, state);
     report.newton += step.newton;
     report.products += step.products;

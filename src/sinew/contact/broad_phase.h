@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "sinew/contact/boxes.h"
-#include "sinew/contact/touching.h"
-#include "sinew/contact/track.h"
+#include "sinew/contact/motion_bound.h"
+#include "sinew/contact/narrow_phase.h"
 
 namespace sinew {
 
 // Items by key: item[start[k] .. start[k + 1]) belong to key[k].
-struct NearList {
+struct NeighbourList {
   std::vector<Index> key;    // rising
   std::vector<Index> start;  // (keys + 1)
   std::vector<Index> item;   // by `far`, then rising, within a key
@@ -38,7 +38,7 @@ struct SurfacePart {
   std::vector<Index> nodes;      // node slots, rising
   std::vector<Index> triangles;  // rising
   std::vector<Index> edges;      // that may meet others, rising
-  RigidTrack track;
+  RigidMotionBound track;
 
   // At the end of the step, where `fitted`: of the triangles, of edges that are sharp to others (0)
   // and to the own body (1), and of those that are not.
@@ -48,36 +48,36 @@ struct SurfacePart {
 };
 
 // All parts of an owner's surface.
-std::vector<SurfacePart> parts_of(Index owner, const Touching& touching,
+std::vector<SurfacePart> parts_of(Index owner, const NarrowPhase& touching,
                                   const std::vector<Vec3>& rest);
 
 // Fits the part's boxes to the end of the step.
-void fit_boxes(SurfacePart& part, const Touching& touching, const std::vector<Vec3>& to);
+void fit_boxes(SurfacePart& part, const NarrowPhase& touching, const std::vector<Vec3>& to);
 
 // What of an owner's surface is near a part of another's, or of its own.
 struct NearPart {
   Index part = 0;
   Index owner = 0;
-  NearList nodes;       // node slots of the part, triangles of the owner
-  NearList edges;       // edges of the part, edges of the owner
+  NeighbourList nodes;  // node slots of the part, triangles of the owner
+  NeighbourList edges;  // edges of the part, edges of the owner
   double moved = 0.0;   // how far they have moved against each other since then, at most [m]
   double before = 0.0;  // of that, until the last check [m]
 
   struct Other {
     Index part;
-    RigidTrack::Mark mark;
+    RigidMotionBound::Mark mark;
   };
-  bool known = false;         // the lists can be used again
-  double reach = 0.0;         // they are good for [m]
-  RigidTrack::Mark mark;      // of the part when they were made
-  std::vector<Other> others;  // the owner's parts that were close enough to be in them, rising
+  bool known = false;           // the lists can be used again
+  double reach = 0.0;           // they are good for [m]
+  RigidMotionBound::Mark mark;  // of the part when they were made
+  std::vector<Other> others;    // the owner's parts that were close enough to be in them, rising
 };
 
 // Fills lists. Any number of threads may call make() at a time.
 class NearFinder {
  public:
-  NearFinder(const Touching& touching, const std::vector<SurfacePart>& parts)
-      : touching_(touching), parts_(parts) {}
+  NearFinder(const NarrowPhase& touching, const std::vector<SurfacePart>& parts)
+      : narrow_phase_(touching), parts_(parts) {}
 
   // The lists of a part with its `others`, whose boxes have been fitted. They hold what comes
   // within `more` [m] of its range; where `swept`, what does so in this step.
@@ -99,11 +99,11 @@ class NearFinder {
     bool swept;
     const Moves& moves;
   };
-  void list_nodes(const Search& search, Scratch& scratch, NearList& list) const;
-  void list_edges(const Search& search, Scratch& scratch, NearList& list) const;
+  void list_nodes(const Search& search, Scratch& scratch, NeighbourList& list) const;
+  void list_edges(const Search& search, Scratch& scratch, NeighbourList& list) const;
   void mark_neighbours(Index slot, Scratch& scratch) const;
 
-  const Touching& touching_;
+  const NarrowPhase& narrow_phase_;
   const std::vector<SurfacePart>& parts_;
   tbb::enumerable_thread_specific<Scratch> scratch_;
 };

@@ -87,7 +87,7 @@ inline NodeAndTriangle motion_of(Index p, Index a, Index b, Index c, const std::
 }
 
 // The first moment at which p goes through the triangle from its front to its back.
-struct Meeting {
+struct TimeOfImpact {
   bool met = false;
   double moment = 0.0;                // [-] in [0, 1]
   std::array<double, 3> weight = {};  // of the triangle's corners, or of s (0) and t (1)
@@ -98,12 +98,12 @@ inline Vec3 between(const Vec3& from, const Vec3& to, double t) {
   return from + t * (to - from);
 }
 
-inline Meeting node_meets_triangle(const NodeAndTriangle& m) {
+inline TimeOfImpact impact_of_node(const NodeAndTriangle& m) {
   const Vec3 u = m.p0 - m.a0, du = m.p1 - m.a1 - u;
   const Vec3 v = m.b0 - m.a0, dv = m.b1 - m.a1 - v;
   const Vec3 w = m.c0 - m.a0, dw = m.c1 - m.a1 - w;
   const Cubic f = moving_determinant(u, du, v, dv, w, dw);
-  Meeting meeting;
+  TimeOfImpact meeting;
   const Roots roots = crossings(f);
   for (int i = 0; i < roots.count; ++i) {
     const double t = roots.t[static_cast<std::size_t>(i)];
@@ -129,14 +129,14 @@ inline Meeting node_meets_triangle(const NodeAndTriangle& m) {
 
 // The first moment at which edge a b goes through edge c d; the normal points to where a b came
 // from, weight[0] is s on a b, weight[1] t on c d.
-inline Meeting edge_meets_edge(const NodeAndTriangle& m) {
+inline TimeOfImpact impact_of_edges(const NodeAndTriangle& m) {
   const Vec3 &a0 = m.p0, &b0 = m.a0, &c0 = m.b0, &d0 = m.c0;
   const Vec3 &a1 = m.p1, &b1 = m.a1, &c1 = m.b1, &d1 = m.c1;
   const Vec3 r = a0 - c0, dr = a1 - c1 - r;
   const Vec3 u = b0 - a0, du = b1 - a1 - u;
   const Vec3 v = d0 - c0, dv = d1 - c1 - v;
   const Cubic f = moving_determinant(r, dr, u, du, v, dv);
-  Meeting meeting;
+  TimeOfImpact meeting;
   const Roots roots = crossings(f);
   for (int i = 0; i < roots.count; ++i) {
     const double t = roots.t[static_cast<std::size_t>(i)];

@@ -1,4 +1,4 @@
-#include "sinew/contact/near_lists.h"
+#include "sinew/contact/neighbour_lists.h"
 
 #include <algorithm>
 #include <limits>
@@ -23,7 +23,8 @@ constexpr double stale_track = 0.02;
 
 }  // namespace
 
-NearLists::NearLists(const Model& model, const Touching& touching) : touching_(touching) {
+NeighbourLists::NeighbourLists(const Model& model, const NarrowPhase& touching)
+    : narrow_phase_(touching) {
   const TouchSurface& s = touching.surface();
   const auto& x = model.rest_position;
   owners_.resize(uz(s.owner_count()));
@@ -32,16 +33,16 @@ NearLists::NearLists(const Model& model, const Touching& touching) : touching_(t
     const Range triangles = s.owner_triangles[uz(o)];
     for (Index t = triangles.begin; t < triangles.end; ++t) {
       owner.size += s.triangle_size[uz(t)] / triangles.size();
-      owner.range = std::max(owner.range, Touching::depth_share * s.triangle_size[uz(t)]);
+      owner.range = std::max(owner.range, NarrowPhase::depth_share * s.triangle_size[uz(t)]);
     }
     const Range nodes = s.owner_nodes[uz(o)];
-    owner.track = Track({s.nodes.begin() + nodes.begin, s.nodes.begin() + nodes.end}, x);
+    owner.track = MotionBound({s.nodes.begin() + nodes.begin, s.nodes.begin() + nodes.end}, x);
     owner.parts.begin = part_count();
     std::vector<SurfacePart> parts = parts_of(o, touching, x);
     std::move(parts.begin(), parts.end(), std::back_inserter(parts_));
     owner.parts.end = part_count();
   }
-  finder_ = std::make_unique<NearFinder>(touching_, parts_);
+  finder_ = std::make_unique<NearFinder>(narrow_phase_, parts_);
   close_.resize(parts_.size());
   const Touch touch = model.touch.value_or(Touch{false, false, 0.0, 0.0});
   for (Index a = 0; a < s.owner_count(); ++a) {
@@ -56,19 +57,19 @@ NearLists::NearLists(const Model& model, const Touching& touching) : touching_(t
   }
 }
 
-NearLists::~NearLists() = default;
+NeighbourLists::~NeighbourLists() = default;
 
-double NearLists::range_of(const NearPair& pair, double reach) const {
+double NeighbourLists::range_of(const NearPair& pair, double reach) const {
   return std::max(reach, std::min(owners_[uz(pair.a)].range, owners_[uz(pair.b)].range));
 }
 
-double NearLists::skin_of(const NearPair& pair) const {
+double NeighbourLists::skin_of(const NearPair& pair) const {
   return (pair.a == pair.b ? self_skin_share : skin_share) *
          std::min(owners_[uz(pair.a)].size, owners_[uz(pair.b)].size);
 }
 
 // Brings the tracks of the owner's parts to this step.
-void NearLists::look(Owner& owner, const Moves& moves) {
+void NeighbourLists::look(Owner& owner, const Moves& moves) {
   if (std::exchange(owner.looked, true)) return;
   const bool slow = apart(owner.track.step(), owner.track.step()) <= 0.1 * skin_share * owner.size;
   parallel_for(owner.parts.size(), [&](Index i) {
@@ -81,7 +82,7 @@ void NearLists::look(Owner& owner, const Moves& moves) {
 
 // Which parts of the pair are within range and skin of each other in this step; how far the others
 // are from being in range goes into `slack`.
-void NearLists::find_close(const NearPair& pair, double range, double skin, double& slack) {
+void NeighbourLists::find_close(const NearPair& pair, double range, double skin, double& slack) {
   const Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
   const double most = apart(a.track.step(), b.track.step());
   const double limit = range + skin + most;
@@ -94,7 +95,7 @@ void NearLists::find_close(const NearPair& pair, double range, double skin, doub
   }
   const Box all = b.track.end_box();
   for (Index p = a.parts.begin; p < a.parts.end; ++p) {
-    const RigidTrack& track = parts_[uz(p)].track;
+    const RigidMotionBound& track = parts_[uz(p)].track;
     const Box& box = track.end_box();
     const double to_all = (box.lo - all.hi).cwiseMax(all.lo - box.hi).maxCoeff();
     if (to_all > limit) {
@@ -109,7 +110,7 @@ void NearLists::find_close(const NearPair& pair, double range, double skin, doub
         continue;
       }
       // Where it comes from, seen from p, give or take.
-      const RigidTrack& other = parts_[uz(q)].track;
+      const RigidMotionBound& other = parts_[uz(q)].track;
       const Vec3 way = track.step().shift() - other.step().shift();
       Box swept = other.end_box();
       swept.lo += way.cwiseMin(Vec3::Zero());
@@ -129,11 +130,11 @@ void NearLists::find_close(const NearPair& pair, double range, double skin, doub
 // How much of its skin [m] a part's lists have used, or parts outside them that come closer leave
 // of it; infinite where they do not hold what they have to. Sets `before`. `most`: at most so far
 // do the owners move in the step.
-double NearLists::used_of(NearPart& near, double range, double skin, double most,
-                          double reach) const {
+double NeighbourLists::used_of(NearPart& near, double range, double skin, double most,
+                               double reach) const {
   constexpr double all = std::numeric_limits<double>::infinity();
   if (!near.known || reach > near.reach) return all;
-  const RigidTrack& track = parts_[uz(near.part)].track;
+  const RigidMotionBound& track = parts_[uz(near.part)].track;
   double used = 0.0;
   near.before = 0.0;
   auto other = near.others.begin();
@@ -152,12 +153,12 @@ double NearLists::used_of(NearPart& near, double range, double skin, double most
 }
 
 // New lists; returns how much of their skin the step uses, infinite where they are for it alone.
-double NearLists::build(const std::vector<NearPart*>& stale, double skin, const Moves& moves) {
+double NeighbourLists::build(const std::vector<NearPart*>& stale, double skin, const Moves& moves) {
   const auto prepare = [&](Index p) {
     SurfacePart& part = parts_[uz(p)];
     if (part.fitted) return;
     if (part.track.off() > stale_track * owners_[uz(part.owner)].size) part.track.renew(moves);
-    fit_boxes(part, touching_, moves.to);
+    fit_boxes(part, narrow_phase_, moves.to);
   };
   for (const NearPart* near : stale) {
     prepare(near->part);
@@ -165,12 +166,12 @@ double NearLists::build(const std::vector<NearPart*>& stale, double skin, const 
   }
   parallel_tasks(static_cast<Index>(stale.size()), [&](Index i) {
     NearPart& near = *stale[uz(i)];
-    const RigidTrack& track = parts_[uz(near.part)].track;
+    const RigidMotionBound& track = parts_[uz(near.part)].track;
     near.mark = track.mark();
     near.others.clear();
     near.before = 0.0;
     for (const Close& close : close_[uz(near.part)]) {
-      const RigidTrack& other = parts_[uz(close.part)].track;
+      const RigidMotionBound& other = parts_[uz(close.part)].track;
       near.others.push_back({close.part, other.mark()});
       const double way = changed_since(track, near.mark, other, near.others.back().mark) +
                          apart(track.step(), other.step()) + 1e-6 * skin;
@@ -190,7 +191,7 @@ double NearLists::build(const std::vector<NearPart*>& stale, double skin, const 
 }
 
 // Looks at every part of the pair, and makes new lists where the old ones do not do any more.
-void NearLists::check(NearPair& pair, const Moves& moves) {
+void NeighbourLists::check(NearPair& pair, const Moves& moves) {
   Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
   look(a, moves);
   look(b, moves);
@@ -244,8 +245,8 @@ void NearLists::check(NearPair& pair, const Moves& moves) {
 }
 
 // The parts that have lists at all, and their triangles.
-void NearLists::collect(NearPair& pair) {
-  const TouchSurface& s = touching_.surface();
+void NeighbourLists::collect(NearPair& pair) {
+  const TouchSurface& s = narrow_phase_.surface();
   marked_.resize(s.triangles.size(), 0);
   pair.parts.clear();
   pair.triangles.clear();
@@ -266,14 +267,14 @@ void NearLists::collect(NearPair& pair) {
   std::sort(pair.triangles.begin(), pair.triangles.end());
 }
 
-const std::vector<const NearPair*>& NearLists::update(const Moves& moves) {
+const std::vector<const NearPair*>& NeighbourLists::update(const Moves& moves) {
   for (Owner& owner : owners_) {
     owner.looked = false;
     owner.track.look(moves);
   }
   near_.clear();
   for (NearPair& pair : pairs_) {
-    const Track &a = owners_[uz(pair.a)].track, &b = owners_[uz(pair.b)].track;
+    const MotionBound &a = owners_[uz(pair.a)].track, &b = owners_[uz(pair.b)].track;
     if (pair.a != pair.b && !a.box().grown(range_of(pair, moves.reach)).overlaps(b.box())) {
       pair.checked = false;
       continue;
@@ -285,7 +286,7 @@ const std::vector<const NearPair*>& NearLists::update(const Moves& moves) {
       since = 0.0;
     }
     for (NearPart& near : pair.all) near.moved = near.before + since;
-    pair.calm = apart(a.step(), b.step()) <= touching_.calm_motion(pair.a, pair.b);
+    pair.calm = apart(a.step(), b.step()) <= narrow_phase_.calm_motion(pair.a, pair.b);
     near_.push_back(&pair);
   }
   return near_;

@@ -1,4 +1,4 @@
-#include "sinew/forces/righting.h"
+#include "sinew/forces/inversion_recovery.h"
 
 #include <Eigen/SVD>
 #include <algorithm>
