@@ -279,7 +279,7 @@ NodeTouch NarrowPhase::node_touches(Index slot, Index owner, const NearTriangles
   c.weight[0] = 1.0;
 
   // On the way.
-  Impact hit;
+  TimeOfImpact hit;
   Index hit_triangle = -1;
   const auto fast = [&](Index t) {
     return relative_motion(node, surface_.triangles[uz(t)], moves) >
@@ -297,7 +297,7 @@ NodeTouch NarrowPhase::node_touches(Index slot, Index owner, const NearTriangles
         const Triangle& tri = surface_.triangles[uz(t)];
         if (!fast(t)) continue;
         if (self && (adjoin(slot, tri) || rest_distance(node, tri) == 0.0)) continue;
-        const Impact m =
+        const TimeOfImpact m =
             impact_of_node(motion_of(node, tri[0], tri[1], tri[2], moves.from, moves.to));
         if (!m.met ||
             (hit.met && (hit.moment < m.moment || (hit.moment == m.moment && hit_triangle < t)))) {
