@@ -7,7 +7,7 @@
 namespace sinew {
 namespace {
 
-TEST(Impact, RootsOfCubicsWithKnownOnes) {
+TEST(TimeOfImpact, RootsOfCubicsWithKnownOnes) {
   std::mt19937 rng(1);
   std::uniform_real_distribution<double> u(-0.5, 1.5);
   for (int n = 0; n < 2000; ++n) {
@@ -28,7 +28,7 @@ TEST(Impact, RootsOfCubicsWithKnownOnes) {
   }
 }
 
-TEST(Impact, ANodeThatIsShotAtAPointOfATriangleThatMoves) {
+TEST(TimeOfImpact, ANodeThatIsShotAtAPointOfATriangleThatMoves) {
   std::mt19937 rng(2);
   std::uniform_real_distribution<double> u(-1.0, 1.0), share(0.05, 1.0);
   const auto vec = [&] { return Vec3(u(rng), u(rng), u(rng)); };
@@ -48,7 +48,7 @@ TEST(Impact, ANodeThatIsShotAtAPointOfATriangleThatMoves) {
     const Vec3 way = -5.0 * normal + vec();
     m.p0 = w[0] * a + w[1] * b + w[2] * c - moment * way;
     m.p1 = m.p0 + way;
-    const Impact hit = impact_of_node(m);
+    const TimeOfImpact hit = impact_of_node(m);
     ASSERT_TRUE(hit.met);
     EXPECT_NEAR(hit.moment, moment, 1e-9);
     EXPECT_NEAR((hit.normal - normal).norm(), 0.0, 1e-7);
@@ -61,11 +61,11 @@ TEST(Impact, ANodeThatIsShotAtAPointOfATriangleThatMoves) {
   EXPECT_GT(met, 500);
 }
 
-TEST(Impact, EdgesThatCross) {
+TEST(TimeOfImpact, EdgesThatCross) {
   NodeAndTriangle m;  // along x, falling from 1 to -1; along z at height 0, at rest
   m.p0 = Vec3(-1, 1, 0), m.a0 = Vec3(1, 1, 0), m.p1 = Vec3(-1, -1, 0), m.a1 = Vec3(1, -1, 0);
   m.b0 = m.b1 = Vec3(0.5, 0, -1), m.c0 = m.c1 = Vec3(0.5, 0, 3);
-  const Impact hit = impact_of_edges(m);
+  const TimeOfImpact hit = impact_of_edges(m);
   ASSERT_TRUE(hit.met);
   EXPECT_NEAR(hit.moment, 0.5, 1e-12);
   EXPECT_NEAR(hit.weight[0], 0.75, 1e-12);
