@@ -29,7 +29,7 @@ endif()
 # most of a compiler's time goes into headers and the templates in them, once for each source. The
 # preset debug does without both, so that a missing include is seen.
 option(SINEW_FAST_BUILD "Unity builds and precompiled headers" ON)
-set(SINEW_BATCH 8 CACHE STRING "Sources in a batch of a unity build")
+set(SINEW_BATCH 16 CACHE STRING "Sources in a batch of a unity build")
 if(SINEW_FAST_BUILD AND CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache"
    AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(-fpch-preprocess)  # ccache needs it to see through precompiled headers
@@ -46,6 +46,17 @@ function(sinew_precompile target first)
       <fmt/format.h> <functional> <map> <string> <tbb/parallel_for.h> <vector> ${ARGN})
   else()
     target_precompile_headers(${target} REUSE_FROM ${first})
+  endif()
+endfunction()
+
+# sinew_batches(TARGET): the sources of TARGET in batches.
+function(sinew_batches target)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SINEW_FAST_BUILD}
+    UNITY_BUILD_BATCH_SIZE ${SINEW_BATCH})
+  if(SINEW_FAST_BUILD AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+    # To clang a local name shadows the unnamed namespace of another file of the batch; g++ checks
+    # the same sources.
+    set_target_properties(${target} PROPERTIES SINEW_BATCH_SHADOWS ON)
   endif()
 endfunction()
 
@@ -69,13 +80,7 @@ function(sinew_room name level)
     target_link_libraries(sinew_${name} PUBLIC sinew_flags ${below} ${ARGN})
     target_compile_definitions(sinew_${name} PRIVATE SINEW_VERSION="${PROJECT_VERSION}")
     sinew_precompile(sinew_${name} sinew_base)
-    set_target_properties(sinew_${name} PROPERTIES UNITY_BUILD ${SINEW_FAST_BUILD}
-      UNITY_BUILD_BATCH_SIZE ${SINEW_BATCH})
-    if(SINEW_FAST_BUILD AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-      # To clang a local name shadows the unnamed namespace of another file of the batch; g++ checks
-      # the same sources.
-      set_target_properties(sinew_${name} PROPERTIES SINEW_BATCH_SHADOWS ON)
-    endif()
+    sinew_batches(sinew_${name})
     if(BUILD_SHARED_LIBS)  # which shows what is marked SINEW_API alone
       set_target_properties(sinew_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON
         CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)

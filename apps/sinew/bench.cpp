@@ -5,14 +5,13 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <thread>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "sinew/base/error.h"
 #include "sinew/io/file_io.h"
 
@@ -21,9 +20,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr int interrupted = 130;
-
-constexpr const char* kFooter = R"(
+constexpr const char* bench_footer = R"(
 The machine's own limits come first: bandwidth of three sizes of memory and multiply-adds a second.
 Then every kernel and whole frames on the clamped beams W(k) of 20 k^3 tets, and on the scenes
 given: median time, bytes that have to move at least, share of the limit that bounds it, hash of
@@ -38,14 +35,7 @@ Examples:
   sinew bench scenes/liver.toml --meshes 4 --filter liver --json build/liver.json
   sinew bench --quick -q --json - | jq '.rows[] | [.kernel, .mesh, .ns_per_item]')";
 
-std::atomic<bool> stop_requested{false};
-
-extern "C" void stop_bench(int signal_number) {
-  stop_requested.store(true);
-  std::signal(signal_number, SIG_DFL);
-}
-
-struct Arguments {
+struct BenchArguments {
   study::BenchOptions options;
   bool quick = false, quiet = false;
   bool meshes_given = false, seconds_given = false;
@@ -114,11 +104,9 @@ std::vector<study::BenchRow> peer_rows(const std::string& program,
   return study::rows_from_json(json, program);
 }
 
-int bench(Arguments& a) {
-  std::signal(SIGINT, stop_bench);
-  std::signal(SIGTERM, stop_bench);
+int bench(BenchArguments& a) {
   study::BenchOptions& options = a.options;
-  options.stop = &stop_requested;
+  options.stop = &stop_on_signals();
   if (a.quick && !a.meshes_given) options.meshes = {4, 8};
   if (a.quick && !a.seconds_given) options.seconds = 0.03;
   const bool terminal = isatty(STDERR_FILENO) == 1;
@@ -148,7 +136,7 @@ int bench(Arguments& a) {
 }  // namespace
 
 void add_bench(CLI::App& app, int& status) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<BenchArguments>();
   study::BenchOptions& o = a->options;
   const int cores = static_cast<int>(std::thread::hardware_concurrency());
   if (cores > 1) o.threads.push_back(cores);
@@ -179,7 +167,7 @@ void add_bench(CLI::App& app, int& status) {
           "Program whose rows join; without --filter: sinew_peer_bullet beside sinew, if there")
       ->type_name("PROGRAM");
   command->add_flag("-q,--quiet", a->quiet, "No progress and no table");
-  command->footer(kFooter);
+  command->footer(bench_footer);
   command->callback([a, meshes, seconds, &status] {
     a->meshes_given = meshes->count() > 0;
     a->seconds_given = seconds->count() > 0;

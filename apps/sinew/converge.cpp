@@ -4,21 +4,18 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "sinew/base/parallel.h"
 
 using namespace sinew;
 
 namespace {
 
-constexpr int interrupted = 130;
-
-constexpr const char* kFooter = R"(
+constexpr const char* converge_footer = R"(
 Each level cuts every tet into eight: edges half as long, 8 times the tets, of a dynamic scene about
 16 times the time. Exit code 0 also where a probe does not converge: that is a warning.
 
@@ -27,14 +24,7 @@ Examples:
   sinew converge scenes/beam.toml --set stepper=static --set beam.poisson=0.499 --levels 4
   sinew converge scenes/liver.toml --set stepper=static --levels 2 --json | jq .probes)";
 
-std::atomic<bool> stop_requested{false};
-
-extern "C" void stop_converging(int signal_number) {
-  stop_requested.store(true);
-  std::signal(signal_number, SIG_DFL);
-}
-
-struct Arguments {
+struct ConvergeArguments {
   std::string scene;
   std::vector<std::string> set;
   int levels = 3;
@@ -42,14 +32,12 @@ struct Arguments {
   int threads = 0;
 };
 
-int converge(const Arguments& a) {
-  std::signal(SIGINT, stop_converging);
-  std::signal(SIGTERM, stop_converging);
+int converge(const ConvergeArguments& a) {
   const ThreadLimit limit(a.threads);
   const bool terminal = isatty(STDERR_FILENO) == 1;
   study::ConvergeOptions options;
   options.levels = a.levels;
-  options.stop = &stop_requested;
+  options.stop = &stop_on_signals();
   if (!a.quiet && !a.json)
     options.on_progress = [&](int level, double share) {
       if (terminal) {
@@ -73,7 +61,7 @@ int converge(const Arguments& a) {
 }  // namespace
 
 void add_converge(CLI::App& app, int& status) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ConvergeArguments>();
   CLI::App* command = app.add_subcommand(
       "converge", "Run a scene on finer and finer meshes and see where its probes go");
   command->add_option("SCENE", a->scene, "Scene file (TOML)")->required();
@@ -88,6 +76,6 @@ void add_converge(CLI::App& app, int& status) {
   command->add_option("--threads", a->threads, "Threads to use; the result does not depend on it")
       ->check(CLI::Range(0, 1024))
       ->default_str("all");
-  command->footer(kFooter);
+  command->footer(converge_footer);
   command->callback([a, &status] { status = converge(*a); });
 }

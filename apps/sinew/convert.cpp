@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* convert_footer =
     R"(The endings name the formats: .mesh (MEDIT), .msh (Gmsh), .node and .ele (TetGen), .vtk, .vtu.
 Variants for --format, the first is the default:
   .msh  gmsh41 gmsh41-binary gmsh22 gmsh22-binary
@@ -30,7 +30,7 @@ Examples:
   sinew convert liver.mesh liver.vtu --scale 0.001
   sinew convert heart.vtk heart.msh --format gmsh22 --repair)";
 
-struct Arguments {
+struct ConvertArguments {
   std::string in;
   std::string out;
   double scale = 1;
@@ -95,7 +95,7 @@ void print_repair(const RepairReport& report) {
   }
 }
 
-void convert(const Arguments& a) {
+void convert(const ConvertArguments& a) {
   const std::string ending = io::lower_extension(a.out);
   const io::WriteOptions options = write_options(ending, a.format);
   const std::vector<fs::path> existing = existing_outputs(a.out, ending);
@@ -130,7 +130,7 @@ void convert(const Arguments& a) {
 void add_convert(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("convert", "Write a tetrahedral mesh in another file format");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ConvertArguments>();
   command->add_option("in", a->in, "Mesh file to read")->required();
   command->add_option("out", a->out, "Mesh file to write")->required();
   add_scale_option(*command, a->scale);
@@ -138,6 +138,6 @@ void add_convert(CLI::App& app) {
                     "Turn inverted tets, drop unreferenced nodes; refuse what cannot be repaired");
   command->add_option("--format", a->format, "Variant of the format, see below");
   command->add_flag("--force", a->force, "Replace existing files");
-  command->footer(kFooter);
+  command->footer(convert_footer);
   command->callback([a] { convert(*a); });
 }

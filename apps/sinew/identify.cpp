@@ -22,7 +22,7 @@ using json = nlohmann::ordered_json;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* identify_footer =
     R"(Measures the body alone, on its own mesh: by tractions on its free surface, and by affine
 displacement of its surface. docs/methods/identify.md has the method. Lengths are in metres:
 a mesh in millimetres needs --scale 0.001.
@@ -32,7 +32,7 @@ Examples:
   sinew identify organ.msh --young 15e3 --poisson 0.49 --law lloyd --json
   sinew identify organ.msh --young 15e3 --poisson 0.45 --html identify.html)";
 
-struct Arguments {
+struct IdentifyArguments {
   std::string mesh;
   std::string law = "all";
   std::string html;
@@ -116,7 +116,8 @@ report::Table speed_table(const std::vector<LawIdentity>& laws) {
   return table;
 }
 
-std::string page(const Arguments& args, const TetMesh& mesh, const std::vector<LawIdentity>& laws) {
+std::string page(const IdentifyArguments& args, const TetMesh& mesh,
+                 const std::vector<LawIdentity>& laws) {
   report::Page p("What the laws make of a material on this mesh");
   p.paragraph(
       fmt::format("{}: {} nodes, {} tets. Asked for: E = {:g} Pa, nu = {:g}, so G = {:.5g} "
@@ -183,7 +184,7 @@ std::string page(const Arguments& args, const TetMesh& mesh, const std::vector<L
   return p.html();
 }
 
-void identify(const Arguments& args) {
+void identify(const IdentifyArguments& args) {
   TetMesh mesh = io::read_mesh(args.mesh);
   repair(mesh, args.mesh);
   for (Vec3& x : mesh.nodes) x *= args.scale;
@@ -226,10 +227,10 @@ void identify(const Arguments& args) {
 }  // namespace
 
 void add_identify(CLI::App& app) {
-  auto args = std::make_shared<Arguments>();
+  auto args = std::make_shared<IdentifyArguments>();
   CLI::App* command =
       app.add_subcommand("identify", "Measure what each law makes of a material on a mesh");
-  command->footer(kFooter);
+  command->footer(identify_footer);
   command->add_option("MESH", args->mesh, "Mesh file: .mesh, .msh, .node, .vtk, .vtu")->required();
   command->add_option("--young", args->asked.young, "Young's modulus asked for [Pa]")
       ->required()

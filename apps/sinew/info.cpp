@@ -23,7 +23,7 @@ using namespace sinew;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* info_footer =
     R"(Lengths are in metres after --scale; ids count from 0, as in ParaView.
 Exit code 3: the mesh cannot be simulated as it is.
 
@@ -31,7 +31,7 @@ Examples:
   sinew info scenes/meshes/liver-10mm.mesh --scale 0.001
   sinew info heart.msh --json | jq .problems)";
 
-struct Arguments {
+struct InfoArguments {
   std::string mesh;
   double scale = 1;
   bool json = false;
@@ -75,7 +75,7 @@ Measures measure(TetMesh mesh, double scale) {
   return m;
 }
 
-Report examine(const Arguments& a) {
+Report examine(const InfoArguments& a) {
   TetMesh mesh = io::read_mesh(a.mesh);
   for (Vec3& x : mesh.nodes) x *= a.scale;
   Report report{a.mesh,         a.scale,     mesh.node_count(), mesh.tet_count(), mesh.faces.size(),
@@ -213,7 +213,7 @@ void print_text(const Report& report) {
   print_problems(report);
 }
 
-void info(const Arguments& a) {
+void info(const InfoArguments& a) {
   const Report report = examine(a);
   if (a.json) {
     // File names need not be UTF-8.
@@ -234,10 +234,10 @@ void info(const Arguments& a) {
 void add_info(CLI::App& app) {
   CLI::App* command = app.add_subcommand(
       "info", "The mesh doctor: size, regions, quality and problems of a tetrahedral mesh");
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<InfoArguments>();
   command->add_option("mesh", a->mesh, "Mesh file")->required();
   add_scale_option(*command, a->scale);
   command->add_flag("--json", a->json, "Print JSON instead of text");
-  command->footer(kFooter);
+  command->footer(info_footer);
   command->callback([a] { info(*a); });
 }

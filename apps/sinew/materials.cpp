@@ -16,7 +16,7 @@ using namespace sinew;
 
 namespace {
 
-constexpr const char* kFooter =
+constexpr const char* materials_footer =
     R"(In a scene, material = "liver" sets young, poisson and density of a body or a region; a value
 stated there overrides it. docs/tissues.md says how to choose within a range.
 
@@ -25,7 +25,7 @@ Examples:
   sinew materials liver
   sinew materials --json | jq '.[] | [.name, .young]')";
 
-struct Arguments {
+struct MaterialsArguments {
   std::string name;
   bool json = false;
 };
@@ -112,7 +112,7 @@ void print_one(const Tissue& t) {
   }
 }
 
-void materials(const Arguments& a) {
+void materials(const MaterialsArguments& a) {
   const Tissue* one = nullptr;
   if (!a.name.empty()) {
     one = find_tissue(a.name);
@@ -135,11 +135,11 @@ void materials(const Arguments& a) {
 }  // namespace
 
 void add_materials(CLI::App& app) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<MaterialsArguments>();
   CLI::App* command = app.add_subcommand(
       "materials", "The tissue library: published properties of named materials");
   command->add_option("NAME", a->name, "Show this one with its sources");
   command->add_flag("--json", a->json, "Print JSON instead of text");
-  command->footer(kFooter);
+  command->footer(materials_footer);
   command->callback([a] { materials(*a); });
 }

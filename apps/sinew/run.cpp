@@ -3,13 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 
 #include "commands.h"
 #include "framework_options.h"
+#include "interrupt.h"
 #include "progress.h"
 #include "sinew/base/parallel.h"
 
@@ -18,15 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-std::atomic<bool> stop_requested{false};
-
-// The first Ctrl-C (or SIGTERM) asks the run to end after its step; a second one kills.
-extern "C" void request_stop(int signal_number) {
-  stop_requested.store(true);
-  std::signal(signal_number, SIG_DFL);
-}
-
-struct Arguments {
+struct RunArguments {
   std::string scene;
   std::string out;
   std::vector<std::string> set;
@@ -38,7 +29,7 @@ struct Arguments {
   int threads = 0;
 };
 
-void add_common(CLI::App& command, Arguments& a) {
+void add_common(CLI::App& command, RunArguments& a) {
   command.add_flag("--json", a.json, "Print summary.json to standard output instead of the table");
   command.add_flag("-q,--quiet", a.quiet, "Print errors only");
   command.add_option("--threads", a.threads, "Threads to use; the result does not depend on it")
@@ -70,15 +61,13 @@ void print_next_steps(const RunResult& result, const fs::path& out) {
 }
 
 template <typename Work>
-int supervise(const Arguments& a, const std::string& title, fs::path out, const Work& work) {
-  std::signal(SIGINT, request_stop);
-  std::signal(SIGTERM, request_stop);
+int supervise(const RunArguments& a, const std::string& title, fs::path out, const Work& work) {
   const ThreadLimit limit(a.threads);
   ProgressBar bar(title, !a.quiet && !a.json);
   RunOptions options;
   options.out = std::move(out);
   options.force = a.force;
-  options.stop = &stop_requested;
+  options.stop = &stop_on_signals();
   options.on_progress = [&](const Progress& p) { bar.update(p); };
   options.on_stepper = [&](StepperKind stepper, const std::string& reason) {
     if (!a.quiet && !a.json)
@@ -104,7 +93,7 @@ int supervise(const Arguments& a, const std::string& title, fs::path out, const 
 }  // namespace
 
 void add_run(CLI::App& app, int& status) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("run", "Run a scene into a folder");
   command->add_option("SCENE", a->scene, "Scene file (TOML, or of the course framework)")
       ->required();
@@ -133,7 +122,7 @@ Examples:
 }
 
 void add_resume(CLI::App& app, int& status) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<RunArguments>();
   CLI::App* command = app.add_subcommand("resume", "Go on with a run from its last checkpoint");
   command->add_option("DIR", a->out, "Folder that 'sinew run' wrote")->required();
   add_common(*command, *a);

@@ -4,12 +4,11 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <memory>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "sinew/base/parallel.h"
 #include "sinew/io/file_io.h"
 #include "sinew/scene/laws.h"
@@ -20,9 +19,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr int thresholds_missed = 7;
-constexpr int interrupted = 130;
-
-constexpr const char* kFooter = R"(
+constexpr const char* validate_footer = R"(
 An error is the difference from the reference as a share of it. 'fem' is linear FEM on the same
 mesh. Exit code 7: a threshold of a case does not hold for the network law, or a tet is inverted.
 docs/validation.md says what the cases are, and how to write one.
@@ -32,14 +29,7 @@ Examples:
   sinew validate beam twist --law neo-hookean --law fem
   sinew validate --quick --json | jq .median_coarsest)";
 
-std::atomic<bool> stop_requested{false};
-
-extern "C" void stop_validation(int signal_number) {
-  stop_requested.store(true);
-  std::signal(signal_number, SIG_DFL);
-}
-
-struct Arguments {
+struct ValidateArguments {
   std::vector<std::string> cases, laws;
   std::string dir = "validation";
   std::string out = "out/validation";
@@ -47,14 +37,14 @@ struct Arguments {
   int threads = 0;
 };
 
-void show(const study::SuiteProgress& p) {
+void show_suite(const study::SuiteProgress& p) {
   if (isatty(STDERR_FILENO) == 1) fmt::print(stderr, "\r\033[K");
   fmt::print(stderr, "{:3}/{} {}", p.done + 1, p.count, p.experiment);
   fmt::print(stderr, "{}", isatty(STDERR_FILENO) == 1 ? "" : "\n");
   std::fflush(stderr);
 }
 
-void write_reports(const Arguments& a, const study::SuiteResult& result) {
+void write_reports(const ValidateArguments& a, const study::SuiteResult& result) {
   std::error_code failed;
   fs::create_directories(a.out, failed);
   if (failed)
@@ -68,7 +58,7 @@ void list_cases(const std::vector<study::Case>& cases) {
   for (const study::Case& c : cases) fmt::print("  {:<16} {}\n", c.name, c.title);
 }
 
-int validate(const Arguments& a) {
+int validate(const ValidateArguments& a) {
   std::vector<study::Case> cases;
   for (const std::string& name : a.cases.empty() ? study::case_names(a.dir) : a.cases)
     cases.push_back(study::load_case(a.dir, name));
@@ -76,15 +66,13 @@ int validate(const Arguments& a) {
     list_cases(cases);
     return 0;
   }
-  std::signal(SIGINT, stop_validation);
-  std::signal(SIGTERM, stop_validation);
   const ThreadLimit limit(a.threads);
   study::SuiteOptions options;
   options.laws = a.laws;
   options.quick = a.quick;
   options.full = a.full;
-  options.stop = &stop_requested;
-  if (!a.quiet) options.on_progress = show;
+  options.stop = &stop_on_signals();
+  if (!a.quiet) options.on_progress = show_suite;
   const study::SuiteResult result = study::run_suite(cases, options);
   if (!a.quiet && isatty(STDERR_FILENO) == 1) fmt::print(stderr, "\r\033[K");
   write_reports(a, result);
@@ -102,7 +90,7 @@ int validate(const Arguments& a) {
 }  // namespace
 
 void add_validate(CLI::App& app, int& status) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ValidateArguments>();
   CLI::App* command =
       app.add_subcommand("validate", "Compare the laws with reference values, case by case");
   std::vector<std::string> laws;
@@ -122,6 +110,6 @@ void add_validate(CLI::App& app, int& status) {
   command->add_option("--threads", a->threads, "Threads to use; the result does not depend on it")
       ->check(CLI::Range(0, 1024))
       ->default_str("all");
-  command->footer(kFooter);
+  command->footer(validate_footer);
   command->callback([a, &status] { status = validate(*a); });
 }

@@ -22,7 +22,7 @@ using namespace sinew;
 
 namespace {
 
-constexpr const char* kFooter = R"(
+constexpr const char* view_footer = R"(
 The page needs no internet: it is part of this program. Whoever opens the address first has the
 controls, others watch. Ctrl-C ends it.
 
@@ -37,7 +37,7 @@ Examples:
   sinew view two_cylinder-scene.txt --constraints two_cylinder-constraints.txt
   sinew view scenes/beam.toml --host 0.0.0.0     for other machines, with the printed token)";
 
-struct Arguments {
+struct ViewArguments {
   std::string scene;   // empty: the gallery
   std::string scenes;  // its folder; empty: the usual place
   std::vector<std::string> set;
@@ -130,7 +130,7 @@ std::string first_scene(const std::filesystem::path& scenes) {
               "name a scene: sinew view scenes/liver.toml, or the folder: --scenes DIR");
 }
 
-int view(const Arguments& a) {
+int view(const ViewArguments& a) {
   const sigset_t signals = end_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
   const ThreadLimit limit(a.threads);
@@ -156,7 +156,7 @@ int view(const Arguments& a) {
 }  // namespace
 
 void add_view(CLI::App& app, int& status) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<ViewArguments>();
   CLI::App* command =
       app.add_subcommand("view", "Show a scene live in the browser: watch it, pull it, change it");
   command->add_option("SCENE", a->scene,
@@ -180,6 +180,6 @@ void add_view(CLI::App& app, int& status) {
       ->check(CLI::Range(0, 1024))
       ->default_str("all");
   add_framework_options(*command, a->framework);
-  command->footer(kFooter);
+  command->footer(view_footer);
   command->callback([a, &status] { status = view(*a); });
 }

@@ -1,10 +1,10 @@
 #include "sinew/forces/inversion_recovery.h"
 
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "sinew/base/parallel.h"
+#include "sinew/base/rotation.h"
 #include "sinew/forces/network.h"
 #include "sinew/forces/packed.h"
 #include "sinew/forces/volume.h"
@@ -117,12 +117,7 @@ std::vector<Vec3> rest_shape_at(const Model& model, const Body& body, std::span<
   for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) {
     moment += weight(i) * (x[i] - center) * (model.rest_position[i] - rest_center).transpose();
   }
-  // The rotation nearest to the moment; of a mirrored one, the direction with the least moment
-  // turns back (Kabsch 1976).
-  const Eigen::JacobiSVD<Mat3> svd(moment, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 u = svd.matrixU();
-  if (u.determinant() * svd.matrixV().determinant() < 0.0) u.col(2) *= -1.0;
-  const Mat3 rotation = u * svd.matrixV().transpose();
+  const Mat3 rotation = nearest_rotation(moment);
 
   std::vector<Vec3> shape(uz(body.nodes.size()));
   for (std::size_t k = 0; k < shape.size(); ++k) {

@@ -14,14 +14,14 @@ constexpr std::string_view alphabet =
 constexpr std::uint8_t not_base64 = 255;
 
 constexpr std::array<std::uint8_t, 256> make_values() {
-  std::array<std::uint8_t, 256> values{};
-  values.fill(not_base64);
+  std::array<std::uint8_t, 256> value_of_character{};
+  value_of_character.fill(not_base64);
   for (std::size_t i = 0; i < alphabet.size(); ++i) {
-    values[static_cast<unsigned char>(alphabet[i])] = static_cast<std::uint8_t>(i);
+    value_of_character[static_cast<unsigned char>(alphabet[i])] = static_cast<std::uint8_t>(i);
   }
-  return values;
+  return value_of_character;
 }
-constexpr std::array<std::uint8_t, 256> values = make_values();
+constexpr std::array<std::uint8_t, 256> value_of_character = make_values();
 
 }  // namespace
 
@@ -53,7 +53,7 @@ bool Base64Reader::decode_group() {
     while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
     if (at_ == text_.size()) return false;
     const char c = text_[at_];
-    const std::uint8_t value = values[static_cast<unsigned char>(c)];
+    const std::uint8_t value = value_of_character[static_cast<unsigned char>(c)];
     if (c == '=' && digits >= 2) {
       ++padding;
     } else if (value != not_base64 && padding == 0) {
@@ -78,7 +78,7 @@ std::size_t Base64Reader::decode_plain_groups(char* bytes, std::size_t most) {
     std::uint32_t group = 0;
     std::uint32_t all = 0;
     for (std::size_t k = 0; k < 4; ++k) {
-      const std::uint32_t value = values[static_cast<unsigned char>(text_[at_ + k])];
+      const std::uint32_t value = value_of_character[static_cast<unsigned char>(text_[at_ + k])];
       group = group << 6 | value;
       all |= value;
     }

@@ -4,6 +4,7 @@
 #include <array>
 #include <string>
 
+#include "sinew/base/rotation.h"
 #include "sinew/scene/parse.h"
 
 namespace sinew {
@@ -63,7 +64,7 @@ Eigen::Quaterniond parse_turn(const Reader& reader, std::string_view key, const 
   if (reader.has("rotation"))
     reader.fail("rotation", fmt::format("{} has both {} and rotation", reader.name(), key),
                 "remove one of them");
-  return Eigen::Quaterniond::FromTwoVectors(own, parse_direction(reader, key, own));
+  return rotation_between(own, parse_direction(reader, key, own));
 }
 
 void check_soft(const Reader& reader) {

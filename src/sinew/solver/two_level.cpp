@@ -1,10 +1,10 @@
 #include "sinew/solver/two_level.h"
 
 #include <Eigen/Eigenvalues>
-#include <Eigen/SVD>
 #include <algorithm>
 #include <map>
 
+#include "sinew/base/rotation.h"
 #include "sinew/mesh/bisect.h"
 
 namespace sinew {
@@ -39,13 +39,6 @@ std::map<std::pair<Index, int>, std::vector<Index>> nodes_by_region(const Model&
     nodes[{body, stiffest == hold[uz(i)].end() ? 0 : stiffest->first}].push_back(i);
   }
   return nodes;
-}
-
-Mat3 rotation_of(const Mat3& m) {
-  const Eigen::JacobiSVD<Mat3> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  Mat3 flip = Mat3::Identity();
-  flip(2, 2) = (svd.matrixU() * svd.matrixV().transpose()).determinant() < 0.0 ? -1.0 : 1.0;
-  return svd.matrixU() * flip * svd.matrixV().transpose();
 }
 
 }  // namespace
@@ -157,7 +150,7 @@ void TwoLevel::turn(const Field& x) {
       const auto i = uz(nodes_[k]);
       moment += (x[i] - middle) * (model_.rest_position[i] - centre_[uz(g)]).transpose();
     }
-    rotation_[uz(g)] = rotation_of(moment);
+    rotation_[uz(g)] = nearest_rotation(moment);
   });
 }
 
