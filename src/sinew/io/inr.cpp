@@ -13,8 +13,8 @@
 namespace sinew::io {
 namespace {
 
-constexpr std::size_t block = 256;
-constexpr std::size_t longest_header = 64 * block;
+constexpr std::size_t header_block = 256;
+constexpr std::size_t longest_header = 64 * header_block;
 constexpr std::string_view inr_magic = "#INRIMAGE-4#{";
 
 std::string_view trimmed(std::string_view text) {
@@ -44,7 +44,7 @@ class InrHeader {
       if (line.empty() || line.front() == '#' || equals == line.npos) continue;
       values_[std::string(trimmed(line.substr(0, equals)))] = trimmed(line.substr(equals + 1));
     }
-    size_ = (at + block - 1) / block * block;
+    size_ = (at + header_block - 1) / header_block * header_block;
   }
 
   std::size_t size() const { return size_; }
