@@ -82,20 +82,20 @@ void AnswerToLyingBeams(benchmark::State& state) {
         name, k, k, 4 * k, name[0] == 'l' ? "[0, 0.05, 0]" : "[0.004, 0.15, 0.003]");
   }
   const Model model = build_model(parse_scene(text, "beams.toml", "."));
-  Workspace workspace(model);
+  VerletStepper stepper(model, Precision::double_);
   State s = initial_state(model);
   const double h =
-      0.8 * find_stable_step(model, initial_controls(model), s.position, workspace).step;
-  while (s.time < 1.0) verlet_step(model, initial_controls(model), h, s, workspace);
+      0.8 * find_stable_step(model, initial_controls(model), s.position, stepper.forces()).step;
+  while (s.time < 1.0) stepper.step(h, initial_controls(model), s);
 
   // The next step up to the answer.
-  compute_forces(model, initial_controls(model), s, workspace);
+  const std::vector<Vec3> force = stepper.forces().evaluate(initial_controls(model), s).force;
   const std::vector<Vec3> before = s.position;
   for (std::size_t i = 0; i < s.position.size(); ++i) {
-    s.half_velocity[i] += (h * model.inverse_mass[i]) * workspace.force[i];
+    s.half_velocity[i] += (h * model.inverse_mass[i]) * force[i];
     s.position[i] += h * s.half_velocity[i];
   }
-  ContactFinder& finder = workspace.contacts->finder();
+  ContactFinder finder(model);
   const double reach = finder.explicit_reach();
   std::vector<Contact> found;
   finder.find(before, s.position, s.time, s.time + h, reach, found);
@@ -109,7 +109,7 @@ void AnswerToLyingBeams(benchmark::State& state) {
     state.PauseTiming();
     copy = s;
     state.ResumeTiming();
-    answer = solve_contacts(model, found, workspace.force, h, copy, scratch);
+    answer = solve_contacts(model, found, force, h, copy, scratch);
   }
   state.counters["contacts"] = static_cast<double>(found.size());
   state.counters["push"] = static_cast<double>(answer.contacts);

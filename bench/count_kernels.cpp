@@ -32,10 +32,11 @@ constexpr double step = 1e-4;  // [s], well below the stable one
 
 // The beam of the benchmarks, clamped, after some steps.
 struct Bar {
-  explicit Bar(const Material& material) : model(made(material)), workspace(model) {
+  Bar(const Material& material, Precision precision)
+      : model(made(material)), stepper(model, precision) {
     state = initial_state(model);
-    for (int i = 0; i < 10; ++i)
-      verlet_step(model, initial_controls(model), step, state, workspace);
+    VerletStepper first(model, Precision::double_);
+    for (int i = 0; i < 10; ++i) first.step(step, initial_controls(model), state);
   }
 
   static Model made(const Material& material) {
@@ -57,7 +58,7 @@ struct Bar {
   }
 
   const Model model;
-  Workspace workspace;
+  VerletStepper stepper;
   State state;
 };
 
@@ -94,47 +95,48 @@ int main() {
 
   Material network;
   network.damping_ratio = 0.0;
-  Bar bar(network);
+  Bar bar(network, Precision::double_);
+  Bar packed_bar(network, Precision::single);
   const Model& m = bar.model;
   const Index tets = m.tet_count();
   const auto count_tets = [&](const char* name, auto counted, const std::function<void()>& call) {
     count(name, counted, tets, "tet", call);
   };
-  Workspace& w = bar.workspace;
-  const auto verlet = [](Bar& b) {
-    verlet_step(b.model, initial_controls(b.model), step, b.state, b.workspace);
-  };
+  const auto verlet = [](Bar& b) { b.stepper.step(step, initial_controls(b.model), b.state); };
+  TetState at;
   count_tets("double_volumes", counted_double_volumes,
-             [&] { compute_volume_pressures(m, bar.state.position, w); });
+             [&] { at = compute_tet_state(m, bar.state.position, std::move(at)); });
   count_tets("double_step", counted_double_step, [&] { verlet(bar); });
 
   TangentMatrix matrix(m);
   const Objective objective{.model = m, .controls = initial_controls(m), .inertia = 3600.0};
-  prepare_stiffness(m, bar.state.position, w);
+  at = compute_tet_state(m, bar.state.position, std::move(at));
   count_tets("tangent_assembly", counted_tangent_assembly,
-             [&] { matrix.assemble(objective, bar.state.position, 0.0, w); });
+             [&] { matrix.assemble(objective, bar.state.position, 0.0, at); });
   Field4 u(m.rest_position.size()), out(u);
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = Float4(m.rest_position[i]);
   count_tets("tangent_product", counted_tangent_product, [&] { matrix.times(u, out); });
 
-  w.packed = std::make_shared<PackedForces>(m);
-  count_tets("single_forces", counted_single_forces, [&] { w.packed->compute(m, bar.state); });
-  count_tets("single_gather", counted_single_gather, [&] { w.packed->gather(w.force); });
-  count_tets("single_step", counted_single_step, [&] { verlet(bar); });
+  PackedForces packed(m);
+  std::vector<Vec3> force(m.rest_position.size());
+  count_tets("single_forces", counted_single_forces, [&] { packed.compute(m, packed_bar.state); });
+  count_tets("single_gather", counted_single_gather, [&] { packed.gather(force); });
+  count_tets("single_step", counted_single_step, [&] { verlet(packed_bar); });
 
   Material classic;
   classic.law = Law::lloyd;
-  Bar springs(classic);
-  Workspace& s = springs.workspace;
+  Bar springs(classic, Precision::double_);
+  Bar packed_springs(classic, Precision::single);
   const auto count_springs = [&](const char* name, auto counted,
                                  const std::function<void()>& call) {
     count(name, counted, springs.model.spring_count(), "spring", call);
   };
+  std::vector<Vec3> pull;
   count_springs("double_springs", counted_double_springs,
-                [&] { compute_spring_forces(springs.model, springs.state, s); });
+                [&] { compute_spring_forces(springs.model, springs.state, pull); });
   count_springs("double_spring_step", counted_double_spring_step, [&] { verlet(springs); });
-  s.packed = std::make_shared<PackedForces>(springs.model);
+  PackedForces packed_pull(springs.model);
   count_springs("single_springs", counted_single_springs,
-                [&] { s.packed->compute(springs.model, springs.state); });
-  count_springs("single_spring_step", counted_single_spring_step, [&] { verlet(springs); });
+                [&] { packed_pull.compute(springs.model, packed_springs.state); });
+  count_springs("single_spring_step", counted_single_spring_step, [&] { verlet(packed_springs); });
 }

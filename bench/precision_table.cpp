@@ -20,19 +20,18 @@ namespace {
 
 using namespace sinew;
 
-// Norm over the free nodes of what compute_forces() says in single less in double precision, as a
+// Norm over the free nodes of the forces in single less those in double precision, as a
 // share of the norm of their weights.
 double loss(const Model& model, const State& state) {
-  Workspace plain(model);
-  Workspace packed(model);
-  packed.packed = std::make_shared<PackedForces>(model);
-  compute_forces(model, initial_controls(model), state, plain);
-  compute_forces(model, initial_controls(model), state, packed);
+  ForceEvaluator in_double(model, Precision::double_);
+  ForceEvaluator in_single(model, Precision::single);
+  const std::vector<Vec3>& plain = in_double.evaluate(initial_controls(model), state).force;
+  const std::vector<Vec3>& packed = in_single.evaluate(initial_controls(model), state).force;
   double difference = 0.0;
   double weight = 0.0;
   for (std::size_t i = 0; i < model.mass.size(); ++i) {
     if (model.inverse_mass[i] == 0.0) continue;
-    difference += (packed.force[i] - plain.force[i]).squaredNorm();
+    difference += (packed[i] - plain[i]).squaredNorm();
     weight += (model.mass[i] * model.start_gravity).squaredNorm();
   }
   return std::sqrt(difference / weight);

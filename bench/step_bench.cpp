@@ -44,13 +44,13 @@ void per_spring(benchmark::State& state, const Model& model) {
 void VerletStep(benchmark::State& state) {
   const ThreadLimit limit(static_cast<int>(state.range(1)));
   const Model model = model_of(state.range(0));
-  Workspace workspace(model);
+  VerletStepper stepper(model, Precision::double_);
   State s = initial_state(model);
   const double h =
-      0.5 * find_stable_step(model, initial_controls(model), s.position, workspace).step;
-  for (int i = 0; i < 100; ++i) verlet_step(model, initial_controls(model), h, s, workspace);
+      0.5 * find_stable_step(model, initial_controls(model), s.position, stepper.forces()).step;
+  for (int i = 0; i < 100; ++i) stepper.step(h, initial_controls(model), s);
   state.SetLabel("state after 100 steps " + hex(s.hash()));
-  for (auto _ : state) verlet_step(model, initial_controls(model), h, s, workspace);
+  for (auto _ : state) stepper.step(h, initial_controls(model), s);
   per_spring(state, model);
 }
 
@@ -65,13 +65,13 @@ void ImplicitStep(benchmark::State& state) {
   ImplicitStepper stepper(model);
   stepper.prepare(1.0 / 60.0, initial_controls(model), options);
   const State start = initial_state(model);
-  ImplicitReport sum;
+  StepReport sum;
   State s;
   for (auto _ : state) {
     sum = {};
     s = start;
     for (int i = 0; i < 10; ++i) {
-      const ImplicitReport step = stepper.step(1.0 / 60.0, initial_controls(model), options, s);
+      const StepReport step = stepper.step(1.0 / 60.0, initial_controls(model), options, s);
       sum.newton += step.newton;
       sum.products += step.products;
     }
@@ -93,7 +93,7 @@ void StaticSolve(benchmark::State& state) {
   StaticSolver solver(model);
   StaticOptions options;
   options.tolerance = 0.1;
-  StaticReport report;
+  StepReport report;
   State s;
   for (auto _ : state) {
     s = initial_state(model);
@@ -114,12 +114,11 @@ void ConjugateGradients(benchmark::State& state) {
   const Model model = model_of(
       state.range(0), {"beam.law=neo-hookean", "beam.young=" + young,
                        fmt::format("beam.poisson={}", 1e-3 * static_cast<double>(state.range(1)))});
-  Workspace workspace(model);
   LinearSolver solver(model);
   const Objective objective{
       .model = model, .controls = initial_controls(model), .inertia = step ? 3600.0 : 0.0};
-  prepare_stiffness(model, model.rest_position, workspace);
-  solver.assemble(objective, model.rest_position, 0.0, workspace);
+  solver.assemble(objective, model.rest_position, 0.0,
+                  compute_tet_state(model, model.rest_position));
   const Field weight = outer_forces(model, initial_controls(model), initial_state(model));
   Field p;
   int products = 0;
@@ -136,7 +135,7 @@ void ImplicitFrame(benchmark::State& state) {
   options.tolerance = 0.01;
   stepper.prepare(1.0 / 60.0, initial_controls(model), options);
   const State start = initial_state(model);
-  ImplicitReport sum;
+  StepReport sum;
   State s;
   int frames = 0;
   for (auto _ : state) {
@@ -144,7 +143,7 @@ void ImplicitFrame(benchmark::State& state) {
       sum = {};
       s = start;
     }
-    const ImplicitReport step = stepper.step(1.0 / 60.0, initial_controls(model), options, s);
+    const StepReport step = stepper.step(1.0 / 60.0, initial_controls(model), options, s);
     sum.newton += step.newton;
     sum.products += step.products;
   }
@@ -164,11 +163,11 @@ void SweepLimits(benchmark::State& state) {
 
 void StableStepSearch(benchmark::State& state) {
   const Model model = model_of(state.range(0));
-  Workspace workspace(model);
+  ForceEvaluator forces(model, Precision::double_);
   int products = 0;
   for (auto _ : state) {
     products =
-        find_stable_step(model, initial_controls(model), model.rest_position, workspace).iterations;
+        find_stable_step(model, initial_controls(model), model.rest_position, forces).iterations;
   }
   state.counters["products"] = products;
 }

@@ -6,7 +6,6 @@
 
 #include "sinew/contact/contact_solver.h"
 #include "sinew/forces/assemble.h"
-#include "sinew/forces/workspace.h"
 
 namespace sinew {
 namespace {

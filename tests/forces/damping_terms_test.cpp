@@ -8,6 +8,7 @@
 #include "sinew/forces/terms.h"
 #include "tests/support/everything.h"
 #include "tests/support/fields.h"
+#include "tests/support/forces.h"
 
 // Every damping term, held against its own blocks, and the fused loops against their sum.
 
@@ -77,16 +78,15 @@ TEST(DampingTerms, TheFusedLoopsAreTheirSum) {
   // Of a step: the difference that the velocities make.
   State state = initial_state(d.model);
   state.position = d.x;
-  Workspace workspace(d.model);
   state.half_velocity = d.v;
-  EXPECT_NEAR(compute_forces(d.model, d.controls, state, workspace), power, 1e-11 * power);
-  const Eigen::VectorXd moving = test::flat(workspace.force);
+  const NodalForces moving = test::forces_at(d.model, d.controls, state);
+  EXPECT_NEAR(moving.heat, power, 1e-11 * power);
   for (Vec3& v : state.half_velocity) v.setZero();
-  compute_forces(d.model, d.controls, state, workspace);
-  EXPECT_LT((moving - test::flat(workspace.force) - sum).norm(), 1e-11 * sum.norm());
+  const NodalForces still = test::forces_at(d.model, d.controls, state);
+  EXPECT_LT((test::flat(moving.force) - test::flat(still.force) - sum).norm(), 1e-11 * sum.norm());
   // Of a product, on the free nodes.
   std::vector<Vec3> out(d.x.size());
-  stiffness_damping_times(d.at(), 0.0, 1.0, d.v, Tangent::full, workspace, out);
+  test::tangent_times(d.at(), 0.0, 1.0, d.v, Tangent::full, out);
   for (Index i = 0; i < d.model.node_count(); ++i) {
     if (d.model.inverse_mass[uz(i)] > 0.0) {
       EXPECT_LT((out[uz(i)] + sum.segment<3>(3 * i)).norm(), 1e-11 * sum.norm());

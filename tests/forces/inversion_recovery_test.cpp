@@ -7,6 +7,7 @@
 
 #include "sinew/base/random.h"
 #include "sinew/forces/terms.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -21,17 +22,12 @@ Model free_box() {
 
 TEST(InversionRecovery, ABodyIsTangledWhenManyTetsAreInsideOut) {
   const Model m = free_box();
-  Workspace workspace(m);
   State state = initial_state(m);
-  compute_forces(m, initial_controls(m), state, workspace);
-  EXPECT_EQ(find_tangled(m, workspace), 0);
+  EXPECT_TRUE(find_tangled(m, find_low_tets(m, state.position)).empty());
   state.position[0] = Vec3::Zero();  // a corner pushed through its own tets, not through others
-  compute_forces(m, initial_controls(m), state, workspace);
-  EXPECT_EQ(find_tangled(m, workspace), 0);
+  EXPECT_TRUE(find_tangled(m, find_low_tets(m, state.position)).empty());
   for (Vec3& x : state.position) x.z() = 0.0;
-  compute_forces(m, initial_controls(m), state, workspace);
-  EXPECT_EQ(find_tangled(m, workspace), 1);
-  EXPECT_EQ(workspace.tangled[0], 1);
+  EXPECT_EQ(find_tangled(m, find_low_tets(m, state.position)), std::vector<Index>{0});
 }
 
 TEST(InversionRecovery, TheRestShapeGoesWhereTheBodyIs) {
@@ -52,20 +48,20 @@ TEST(InversionRecovery, TheRestShapeGoesWhereTheBodyIs) {
 
 TEST(InversionRecovery, TheForcesKeepMomentumAndAngularMomentum) {
   const Model m = free_box();
-  Workspace workspace(m);
   State state = initial_state(m);
   for (std::size_t i = 0; i < state.position.size(); ++i) state.position[i] = random_point(i);
-  compute_forces(m, initial_controls(m), state, workspace);
-  ASSERT_EQ(find_tangled(m, workspace), 1);
-  right_tangled_bodies(m, state, 1e-4, workspace);
-  Vec3 force = Vec3::Zero(), torque = Vec3::Zero();
+  const NodalForces found = test::forces_at(m, initial_controls(m), state);
+  const std::vector<Index> tangled = find_tangled(m, found.low_tets);
+  ASSERT_EQ(tangled.size(), 1U);
+  const std::vector<Vec3> force = recovery_forces(m, state, 1e-4, tangled, found.force);
+  Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
   double size = 0.0;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
-    force += workspace.force[i];
-    torque += state.position[i].cross(workspace.force[i]);
-    size += workspace.force[i].norm();
+    sum += force[i];
+    torque += state.position[i].cross(force[i]);
+    size += force[i].norm();
   }
-  EXPECT_LE(force.norm(), 1e-9 * size);
+  EXPECT_LE(sum.norm(), 1e-9 * size);
   EXPECT_LE(torque.norm(), 1e-9 * size);
 }
 
@@ -75,7 +71,6 @@ TEST(InversionRecovery, WhatFliesApartIsCaught) {
   Model m = free_box();
   for (double& modulus : m.tet_modulus) modulus *= 1e-6;
   const double size = std::cbrt(m.bodies[0].rest_volume);
-  Workspace workspace(m);
   State state = initial_state(m);
   for (Vec3& x : state.position) x.z() = -x.z();  // inside out
   const double speed = 100.0;                     // [m/s], of sizes of centimetres
@@ -84,16 +79,14 @@ TEST(InversionRecovery, WhatFliesApartIsCaught) {
   }
   const double h = 0.01 * size / speed;
   double farthest = 0.0;
+  ForceEvaluator forces(m, Precision::double_);
   for (int step = 0; step < 500; ++step) {
-    workspace.tangled = {1};
-    std::fill(workspace.force.begin(), workspace.force.end(), Vec3::Zero());
-    compute_forces(m, initial_controls(m), state, workspace);
-    workspace.tangled = {1};
-    right_tangled_bodies(m, state, h, workspace);
+    const std::vector<Vec3> force = recovery_forces(
+        m, state, h, std::vector<Index>{0}, forces.evaluate(initial_controls(m), state).force);
     const std::vector<Vec3> goal = rest_shape_at(m, m.bodies[0], state.position);
     for (std::size_t i = 0; i < state.position.size(); ++i) {
       if (step > 100) farthest = std::max(farthest, (state.position[i] - goal[i]).norm());
-      state.half_velocity[i] += h * m.inverse_mass[i] * workspace.force[i];
+      state.half_velocity[i] += h * m.inverse_mass[i] * force[i];
       state.position[i] += h * state.half_velocity[i];
     }
   }

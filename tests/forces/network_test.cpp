@@ -11,6 +11,7 @@
 #include "sinew/forces/volume_law.h"
 #include "tests/support/effort.h"
 #include "tests/support/fields.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 #include "tests/support/tangent.h"
 #include "tests/support/terms.h"
@@ -35,11 +36,9 @@ Model irregular_box(const Material& material, int cells = 2, double jitter = 0.2
 }
 
 std::vector<Vec3> forces(const Model& m, const std::vector<Vec3>& x) {
-  Workspace workspace(m);
   State state = initial_state(m);
   state.position = x;
-  compute_forces(m, initial_controls(m), state, workspace);
-  return workspace.force;
+  return test::forces_at(m, initial_controls(m), state).force;
 }
 
 TEST(Network, AffineDeformationOfIrregularMeshesIsExact) {
@@ -71,11 +70,9 @@ TEST(Network, AffineDeformationOfIrregularMeshesIsExact) {
       const Mat3 P = mu * F + (kappa * (J - 1.0) - mu) * J * F.inverse().transpose();
       EXPECT_LE((stress / V - P).norm(), 1e-10 * P.norm()) << "beta " << beta << " nu " << poisson;
 
-      Workspace workspace(m);
       const double W =
           0.5 * mu * (F.squaredNorm() - 3.0) - mu * (J - 1.0) + 0.5 * kappa * (J - 1.0) * (J - 1.0);
-      EXPECT_NEAR(elastic_energy(test::at(m, mapped(m.rest_position, F)), workspace) / V, W,
-                  1e-10 * W);
+      EXPECT_NEAR(elastic_energy(test::at(m, mapped(m.rest_position, F))) / V, W, 1e-10 * W);
     }
   }
 }
@@ -88,7 +85,6 @@ TEST(Network, ForcesAreTheNegativeGradientOfTheEnergy) {
       material.volume = volume;
       material.damping_ratio = 0.0;
       const Model m = irregular_box(material);
-      Workspace workspace(m);
       for (const double size : {0.005, 0.04}) {  // mild; tets turned over
         const std::vector<Vec3> x = shaken(m.rest_position, size);
         const std::vector<Vec3> f = forces(m, x);
@@ -100,9 +96,8 @@ TEST(Network, ForcesAreTheNegativeGradientOfTheEnergy) {
             std::vector<Vec3> up(x), down(x);
             up[i][c] += h;
             down[i][c] -= h;
-            const double slope = (elastic_energy(test::at(m, up), workspace) -
-                                  elastic_energy(test::at(m, down), workspace)) /
-                                 (2 * h);
+            const double slope =
+                (elastic_energy(test::at(m, up)) - elastic_energy(test::at(m, down))) / (2 * h);
             EXPECT_NEAR(f[i][c], -slope, 2e-6 * scale);
           }
         }
@@ -209,17 +204,14 @@ TEST(Network, PressureIsMinusTheMeanStress) {
     Material material;
     material.volume = volume;
     const Model m = irregular_box(material);
-    Workspace workspace(m);
     State state = initial_state(m);
-    compute_forces(m, initial_controls(m), state, workspace);
-    for (const double p : measure_pressure(m, state.position, workspace)) {
+    for (const double p : measure_pressure(m, state.position)) {
       EXPECT_NEAR(p, 0.0, 1e-9 * material.young);
     }
     const double strain = 1e-6;
     state.position = mapped(m.rest_position, (1.0 - strain) * Mat3::Identity());
-    compute_forces(m, initial_controls(m), state, workspace);
     const double bulk = material.young / (3.0 * (1.0 - 2.0 * material.poisson));
-    for (const double p : measure_pressure(m, state.position, workspace)) {
+    for (const double p : measure_pressure(m, state.position)) {
       EXPECT_NEAR(p, 3.0 * strain * bulk, 1e-4 * strain * bulk);
     }
   }

@@ -5,6 +5,7 @@
 #include "sinew/base/random.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 #include "tests/support/terms.h"
 
@@ -128,17 +129,17 @@ TEST(Obstacles, ForceAndProductAreTheEnergysDerivatives) {
 
 TEST(Obstacles, TheListOfTermsHasThem) {
   const Model m = pressed_box();
-  Workspace w(m);
   State s = initial_state(m);
   s.time = 0.5;
   std::vector<Vec3> without(m.rest_position.size(), Vec3::Zero());
   ObstacleTerm::add_forces(test::at(m, s.position, s.time), without);
-  compute_forces(m, initial_controls(m), s, w);  // at rest: nothing else acts
+  const std::vector<Vec3> force =
+      test::forces_at(m, initial_controls(m), s).force;  // at rest: nothing else acts
   for (std::size_t i = 0; i < without.size(); ++i)
     if (m.inverse_mass[i] > 0.0) {
-      EXPECT_LT((w.force[i] - without[i]).norm(), 1e-12);
+      EXPECT_LT((force[i] - without[i]).norm(), 1e-12);
     }
-  EXPECT_EQ(measure_energies(m, initial_controls(m), s, w).contact,
+  EXPECT_EQ(test::energies_at(m, initial_controls(m), s).contact,
             ObstacleTerm::energy(test::at(m, s.position, s.time)));
   EXPECT_GT(ObstacleTerm::energy(test::at(m, s.position, s.time)), 0.0);
 
@@ -146,10 +147,9 @@ TEST(Obstacles, TheListOfTermsHasThem) {
   std::vector<Vec3> u(without.size()), full(u.size()), bound(u.size());
   for (std::size_t i = 0; i < u.size(); ++i)
     u[i] = m.inverse_mass[i] > 0.0 ? Vec3(random_point(i) - Vec3::Constant(0.5)) : Vec3::Zero();
-  prepare_stiffness(m, s.position, w);
-  stiffness_damping_times(test::at(m, s.position, s.time), 1.0, 0.0, u, Tangent::full, w, full);
-  stiffness_damping_times(test::at(m, s.position, s.time), 1.0, 0.0, u, Tangent::only_stiffening, w,
-                          bound);
+  test::tangent_times(test::at(m, s.position, s.time), 1.0, 0.0, u, Tangent::full, full);
+  test::tangent_times(test::at(m, s.position, s.time), 1.0, 0.0, u, Tangent::only_stiffening,
+                      bound);
   double of_full = 0.0, of_bound = 0.0;
   for (std::size_t i = 0; i < u.size(); ++i) {
     of_full += u[i].dot(full[i]);

@@ -7,6 +7,7 @@
 #include "sinew/forces/packed.h"
 #include "sinew/forces/stiffness.h"
 #include "tests/support/fields.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -16,17 +17,15 @@ using test::norm;
 
 // |packed - plain| / |plain| of (a K + b C) u for a wave of the length of an edge.
 double mismatch(const Model& m, const std::vector<Vec3>& x, double a, double b) {
-  Workspace w(m);
-  w.packed = std::make_shared<PackedForces>(m);
   std::vector<Vec3> u(x.size()), plain(x.size()), packed(x.size());
   for (std::size_t i = 0; i < u.size(); ++i) {
     const double t = static_cast<double>(i);
     if (m.inverse_mass[i] > 0.0) u[i] = Vec3(std::sin(t), std::sin(1.7 * t), std::cos(2.3 * t));
   }
-  prepare_stiffness(m, x, w);
-  stiffness_damping_times({m, initial_controls(m), x}, a, b, u, Tangent::only_stiffening, w, plain);
+  test::tangent_times({m, initial_controls(m), x}, a, b, u, Tangent::only_stiffening, plain);
   const Controls controls = initial_controls(m);
-  auto product = PackedStiffness::at(m, controls, x, w);
+  ForceEvaluator forces(m, Precision::single);
+  auto product = forces.packed_products(controls, x);
   if (!product) return 1.0;
   product->times(a, b, u, packed);
   const double size = norm(plain);
@@ -82,27 +81,26 @@ TEST(PackedStiffness, LeavesClassicSpringsToThePlainProduct) {
   material.law = Law::lloyd;
   Model springs = test::tissue_box(material, {2, 2, 2});
   finish(springs);
-  Workspace of_springs(springs);
-  of_springs.packed = std::make_shared<PackedForces>(springs);
-  EXPECT_FALSE(
-      PackedStiffness::at(springs, initial_controls(springs), springs.rest_position, of_springs));
-
+  const auto has_packed = [](const Model& m, Precision precision) {
+    const Controls controls = initial_controls(m);
+    ForceEvaluator forces(m, precision);
+    return forces.packed_products(controls, m.rest_position).has_value();
+  };
+  EXPECT_FALSE(has_packed(springs, Precision::single));
   Model m = test::tissue_box(Material{}, {2, 2, 2});
   finish(m);
-  Workspace w(m);
-  EXPECT_FALSE(PackedStiffness::at(m, initial_controls(m), m.rest_position, w));
-  w.packed = std::make_shared<PackedForces>(m);
-  EXPECT_TRUE(PackedStiffness::at(m, initial_controls(m), m.rest_position, w));
+  EXPECT_FALSE(has_packed(m, Precision::double_));
+  EXPECT_TRUE(has_packed(m, Precision::single));
 }
 
 TEST(PackedStiffness, OfNoMotionIsZero) {
   Model m = test::tissue_box(Material{}, {2, 2, 2});
   finish(m);
-  Workspace w(m);
-  w.packed = std::make_shared<PackedForces>(m);
   const std::vector<Vec3> u(m.rest_position.size(), Vec3::Zero());
   std::vector<Vec3> out(u.size(), Vec3::Ones());
-  PackedStiffness::at(m, initial_controls(m), m.rest_position, w)->times(1.0, 1.0, u, out);
+  const Controls controls = initial_controls(m);
+  ForceEvaluator forces(m, Precision::single);
+  forces.packed_products(controls, m.rest_position)->times(1.0, 1.0, u, out);
   EXPECT_EQ(norm(out), 0.0);
 }
 

@@ -49,15 +49,15 @@ State moved(const Model& m, double size) {
 }
 
 std::vector<Vec3> plain(const Model& m, const State& s, double* heat = nullptr) {
-  Workspace w(m);
-  const double power = compute_spring_forces(m, s, w);
+  std::vector<Vec3> of_springs;
+  const double power = compute_spring_forces(m, s, of_springs);
   if (heat != nullptr) *heat = power;
-  if (m.has_volume) compute_volume_pressures(m, s.position, w);
+  const TetState tets = compute_tet_state(m, s.position);
   std::vector<Vec3> f(s.position.size());
   for (Index i = 0; i < m.node_count(); ++i) {
-    f[uz(i)] = gather_springs(m, w, i);
+    f[uz(i)] = gather_springs(m, of_springs, i);
     if (!m.network_start.empty()) f[uz(i)] += network_pull(m, s.position, i);
-    if (m.has_volume) f[uz(i)] += push_of_tets(m, w, i);
+    if (m.has_volume) f[uz(i)] += push_of_tets(m, tets, i);
   }
   return f;
 }

@@ -6,6 +6,7 @@
 
 #include "sinew/forces/stiffness.h"
 #include "tests/support/everything.h"
+#include "tests/support/forces.h"
 
 // Every term of the lists, held against its own energy and its own blocks. A term that is added
 // to forces/terms.h is tested here as soon as test::Everything has something
@@ -133,15 +134,13 @@ TEST(Terms, TheFusedLoopsAreTheirSum) {
     if (term.account == Account::elastic) elastic += term.energy(e.at(e.x));
   });
   K = of_free_nodes(e.model, K);
-  Workspace workspace(e.model);
-  compute_forces(e.model, e.controls, state, workspace);
-  EXPECT_LT((test::flat(workspace.force) - test::flat(f)).norm(), 1e-12 * test::flat(f).norm());
-  EXPECT_NEAR(elastic_energy(e.at(e.x), workspace), elastic, 1e-12 * elastic);
+  const std::vector<Vec3> force = test::forces_at(e.model, e.controls, state).force;
+  EXPECT_LT((test::flat(force) - test::flat(f)).norm(), 1e-12 * test::flat(f).norm());
+  EXPECT_NEAR(elastic_energy(e.at(e.x)), elastic, 1e-12 * elastic);
 
   std::vector<Vec3> out(e.x.size());
   const std::vector<Vec3> u = e.free_field();
-  prepare_stiffness(e.model, e.x, workspace);
-  stiffness_damping_times(e.at(e.x), 1.0, 0.0, u, Tangent::full, workspace, out);
+  test::tangent_times(e.at(e.x), 1.0, 0.0, u, Tangent::full, out);
   const Eigen::VectorXd expected = K * test::flat(u);
   EXPECT_LT((test::flat(out) - expected).norm(), 1e-12 * expected.norm());
 }

@@ -6,6 +6,7 @@
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/model/state.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 #include "tests/support/terms.h"
 
@@ -113,10 +114,9 @@ TEST(Ties, TheModelsForcesHaveThemInBothPrecisions) {
   s.position = displaced(m, 0.3);
   std::vector<Vec3> f(s.position.size(), Vec3::Zero());
   TieTerm::add_forces(test::at(m, s.position), f);
-  Workspace w(m);
-  compute_forces(m, initial_controls(m), s, w);
-  for (std::size_t i = 0; i < f.size(); ++i) EXPECT_LT((w.force[i] - f[i]).norm(), 1e-13);
-  EXPECT_EQ(elastic_energy(test::at(m, s.position), w), TieTerm::energy(test::at(m, s.position)));
+  const std::vector<Vec3> force = test::forces_at(m, initial_controls(m), s).force;
+  for (std::size_t i = 0; i < f.size(); ++i) EXPECT_LT((force[i] - f[i]).norm(), 1e-13);
+  EXPECT_EQ(elastic_energy(test::at(m, s.position)), TieTerm::energy(test::at(m, s.position)));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "tests/support/fields.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -48,9 +49,8 @@ Mat3 edges_of(const Field& x, const Tet& t) {
 
 // What the viscosity alone pulls every node with: -C v.
 Field pulls(const Model& m, const Field& x, const Field& v) {
-  Workspace workspace(m);
   Field out(x.size());
-  stiffness_damping_times({m, initial_controls(m), x}, 0.0, 1.0, v, Tangent::full, workspace, out);
+  test::tangent_times({m, initial_controls(m), x}, 0.0, 1.0, v, Tangent::full, out);
   for (Vec3& f : out) f = -f;
   return out;
 }
@@ -95,21 +95,19 @@ TEST(Viscosity, OfTetsIsThatOfTheFormula) {
 TEST(Viscosity, IsPartOfAllForcesAndItsHeatOfTheAccount) {
   for (const Law law : {Law::neo_hookean, Law::lloyd, Law::uniform}) {
     const Model m = viscous_box(law);
-    Workspace workspace(m);
     State s = initial_state(m);
     s.position = shaken(m.rest_position, 0.01);
-    double power = compute_forces(m, initial_controls(m), s, workspace);
-    const Field still = workspace.force;
-    EXPECT_EQ(power, 0.0);
+    const NodalForces still = test::forces_at(m, initial_controls(m), s);
+    EXPECT_EQ(still.heat, 0.0);
     s.half_velocity = scattered(s.position.size(), 1.0, 50);
-    power = compute_forces(m, initial_controls(m), s, workspace);
+    const NodalForces moving = test::forces_at(m, initial_controls(m), s);
     const Field damping = pulls(m, s.position, s.half_velocity);
     double loss = 0.0;
     for (std::size_t i = 0; i < damping.size(); ++i) {
-      EXPECT_LE((workspace.force[i] - still[i] - damping[i]).norm(), 1e-9 * damping[i].norm());
+      EXPECT_LE((moving.force[i] - still.force[i] - damping[i]).norm(), 1e-9 * damping[i].norm());
       loss -= damping[i].dot(s.half_velocity[i]);
     }
-    EXPECT_NEAR(power, loss, 1e-12 * loss);
+    EXPECT_NEAR(moving.heat, loss, 1e-12 * loss);
   }
 }
 

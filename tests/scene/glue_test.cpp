@@ -95,14 +95,14 @@ TEST(Glue, TwoBodiesFlyOffTogetherWithTheirMomentum) {
   scene.pins.clear();
   const Model m = build_model(scene);
   State s = initial_state(m);
-  Workspace w(m);
+  VerletStepper verlet(m, Precision::double_);
   const auto momentum = [&] {
     Vec3 p = Vec3::Zero();
     for (std::size_t i = 0; i < s.position.size(); ++i) p += m.mass[i] * s.half_velocity[i];
     return p;
   };
   const Vec3 before = momentum();
-  for (int i = 0; i < 500; ++i) verlet_step(m, initial_controls(m), 2e-4, s, w);
+  for (int i = 0; i < 500; ++i) verlet.step(2e-4, initial_controls(m), s);
   EXPECT_LT((momentum() - before).norm(), 1e-6 * before.norm());
   for (const Tie& tie : m.ties) EXPECT_LT(tie_offset(tie, s.position).norm(), 0.005);
 }

@@ -50,23 +50,23 @@ TEST_P(Scenes, HoldAtTheirStableStep) {
   if (test::sanitized && GetParam().stem() == "liver-fine") return;  // as liver.toml
   const Scene scene = load_scene(GetParam());
   const Model model = build_model(scene);
-  Workspace workspace(model);
+  VerletStepper stepper(model, Precision::double_);
   State state = initial_state(model);
-  const double h = scene.safety *
-                   find_stable_step(model, initial_controls(model), state.position, workspace).step;
-  for (int i = 0; i < test::effort(50); ++i)
-    verlet_step(model, initial_controls(model), h, state, workspace);
+  const double h =
+      scene.safety *
+      find_stable_step(model, initial_controls(model), state.position, stepper.forces()).step;
+  for (int i = 0; i < test::effort(50); ++i) stepper.step(h, initial_controls(model), state);
 }
 
 // Runs a scene at the step it gives, or at its stable step, and returns the state at `time`.
 State run_to(double time, const Scene& scene, const Model& model) {
-  Workspace workspace(model);
+  VerletStepper stepper(model, Precision::double_);
   State state = initial_state(model);
   const double stable =
       scene.safety *
-      find_stable_step(model, initial_controls(model), state.position, workspace).step;
+      find_stable_step(model, initial_controls(model), state.position, stepper.forces()).step;
   const double h = scene.dt.value_or(0.5 * stable);
-  while (state.time < time) verlet_step(model, initial_controls(model), h, state, workspace);
+  while (state.time < time) stepper.step(h, initial_controls(model), state);
   return state;
 }
 

@@ -55,7 +55,9 @@ struct Trial {
     return sum;
   }
   double energy() {
-    return measure_energies(model, controls, run.state, stepping.workspace()).total();
+    return measure_energies(model, controls, run.state,
+                            stepping.forces().evaluate(controls, run.state).force)
+        .total();
   }
 
   Scene scene;
@@ -110,8 +112,9 @@ TEST(Contact, BodiesThatCollideKeepTheirMomentum) {
     EXPECT_LT((r.momentum() - before).norm(), 1e-6 * before.norm()) << stepper;
     EXPECT_GT(r.velocity(1).x(), -1.9) << stepper;  // they did meet
     EXPECT_GT(r.run.friction_work, 0.0) << stepper;
-    const Energies e =
-        measure_energies(r.model, initial_controls(r.model), r.run.state, r.stepping.workspace());
+    const Energies e = measure_energies(
+        r.model, initial_controls(r.model), r.run.state,
+        r.stepping.forces().evaluate(initial_controls(r.model), r.run.state).force);
     EXPECT_LT(e.kinetic + e.elastic, energy) << stepper;
     // The account of impacts is of first order in the step.
     EXPECT_NEAR(e.total(), energy, (stepper == "verlet" ? 0.1 : 0.2) * energy) << stepper;
@@ -228,7 +231,8 @@ TEST(Contact, WhatLiesStillHasNoKineticEnergy) {
                         cube("b", "position = [0, 0.03, 0]\ndamping_ratio = 0.5")));
   r.to_the_end();
   const Energies e =
-      measure_energies(r.model, initial_controls(r.model), r.run.state, r.stepping.workspace());
+      measure_energies(r.model, initial_controls(r.model), r.run.state,
+                       r.stepping.forces().evaluate(initial_controls(r.model), r.run.state).force);
   EXPECT_LT(e.kinetic, 1e-3 * e.elastic);
   EXPECT_NEAR(e.total(), 0.0, 0.02 * std::abs(e.gravity));
 }

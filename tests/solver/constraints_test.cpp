@@ -17,6 +17,7 @@
 #include "sinew/solver/implicit.h"
 #include "sinew/solver/static.h"
 #include "tests/support/effort.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -124,7 +125,6 @@ TEST(Constraints, ForceAndTangentAreTheDerivativesOfTheEnergy) {
   Crumpled c;
   ASSERT_GT(c.model.limited.size(), 20U);
   ASSERT_TRUE(c.model.has_volume_limit);
-  Workspace workspace(c.model);
   Constraints constraints(c.model, 3600.0, 60.0, true);
   constraints.start(c.state, &c.from, 1.0 / 60.0);
   std::vector<Vec3> u(c.from.size());
@@ -135,14 +135,15 @@ TEST(Constraints, ForceAndTangentAreTheDerivativesOfTheEnergy) {
   const auto at = [&](double e) {
     std::vector<Vec3> x = c.state.position;
     for (std::size_t i = 0; i < u.size(); ++i) x[i] += e * u[i];
-    prepare_stiffness(c.model, x, workspace);
     return x;
   };
-  const auto energy = [&](double e) { return constraints.value(at(e), workspace); };
+  const auto energy = [&](double e) {
+    return constraints.value(at(e), volumes_of_tets(c.model, at(e)));
+  };
   const auto force = [&](double e) {
     const std::vector<Vec3> x = at(e);
     std::vector<Vec3> f(x.size(), Vec3::Zero());
-    constraints.add_forces(x, workspace, f);
+    constraints.add_forces(x, compute_tet_volumes(c.model, x), f);
     return f;
   };
   const double e = 1e-7;
@@ -154,12 +155,17 @@ TEST(Constraints, ForceAndTangentAreTheDerivativesOfTheEnergy) {
   // The product takes the curvature of the volumes from the material's own: with and without.
   std::vector<Vec3> with(u.size()), without(u.size());
   const std::vector<Vec3> x = at(0.0);
-  stiffness_damping_times({c.model, initial_controls(c.model), x}, 1.0, 0.0, u, Tangent::full,
-                          workspace, without);
-  constraints.linearise(x, workspace);
-  stiffness_damping_times({c.model, initial_controls(c.model), x}, 1.0, 0.0, u, Tangent::full,
-                          workspace, with);
-  constraints.add_stiffness_times(u, workspace, with);
+  TetState tets = compute_tet_state(c.model, x);
+  const Controls controls = initial_controls(c.model);
+  const auto product = [&](std::vector<Vec3>& out) {
+    TangentProduct().times({c.model, controls, x}, tets, 1.0, 0.0, u, Tangent::full, out);
+  };
+  product(without);
+  constraints.linearise(x, tets);
+  for (std::size_t t = 0; t < tets.pressure.size(); ++t)
+    tets.pressure[t] += constraints.tet_pressure()[t];
+  product(with);
+  constraints.add_stiffness_times(tets, u, with);
   const std::vector<Vec3> plus = force(e), minus = force(-e);
   double error = 0.0, size = 0.0;
   for (std::size_t i = 0; i < u.size(); ++i) {
@@ -180,14 +186,13 @@ TEST(Constraints, ADroppedBoxComesToRestOnTheGround) {
     material.drag = 2.0;
     const Model m = box_above_ground(material, 0.02, 0.5);
     State s = initial_state(m);
-    Workspace workspace(m);
     ImplicitStepper stepper(m);
-    double before = measure_energies(m, initial_controls(m), s, workspace).gravity;
+    double before = test::energies_at(m, initial_controls(m), s).gravity;
     for (int i = 0; i < 150; ++i) {
-      const ImplicitReport report = stepper.step(frame, initial_controls(m), {}, s);
-      EXPECT_TRUE(report.within);
+      const StepReport report = stepper.step(frame, initial_controls(m), {}, s);
+      EXPECT_TRUE(report.limits_met);
       EXPECT_GE(lowest(m, s), -1e-3 * 0.05);
-      const Energies e = measure_energies(m, initial_controls(m), s, workspace);
+      const Energies e = test::energies_at(m, initial_controls(m), s);
       const double mechanical = e.kinetic + e.elastic + e.gravity;
       EXPECT_LE(mechanical, before + 1e-6 * weight(m)) << young << " step " << i;
       before = mechanical;
@@ -276,11 +281,12 @@ TEST(Constraints, StretchLimitsHoldUnderAHeavyLoadAtAnyStiffness) {
     State s = initial_state(m);
     ImplicitStepper stepper(m);
     for (int i = 0; i < 30; ++i) {
-      EXPECT_TRUE(stepper.step(frame, initial_controls(m), {}, s).within) << young << " step " << i;
+      EXPECT_TRUE(stepper.step(frame, initial_controls(m), {}, s).limits_met)
+          << young << " step " << i;
       EXPECT_LE(measure_limit_violation(m, s.position), m.limit_tolerance);
     }
     State rest = initial_state(m);
-    EXPECT_TRUE(StaticSolver(m).solve(initial_controls(m), 1.0, {}, rest).within) << young;
+    EXPECT_TRUE(StaticSolver(m).solve(initial_controls(m), 1.0, {}, rest).limits_met) << young;
     EXPECT_LE(measure_limit_violation(m, rest.position), m.limit_tolerance);
     // Stiff bodies never come to their limits.
     EXPECT_EQ(act(rest.reactions), young < 1e9);
@@ -298,11 +304,11 @@ TEST(Constraints, VolumeLimitsHold) {
     State s = initial_state(m);
     ImplicitStepper stepper(m);
     for (int i = 0; i < (test::sanitized ? 2 : 30); ++i) {
-      EXPECT_TRUE(stepper.step(frame, initial_controls(m), {}, s).within);
+      EXPECT_TRUE(stepper.step(frame, initial_controls(m), {}, s).limits_met);
       EXPECT_LE(largest_cell_change(m, s.position), 1e-3 + 1e-4);
     }
     State rest = initial_state(m);
-    EXPECT_TRUE(StaticSolver(m).solve(initial_controls(m), 1.0, {}, rest).within);
+    EXPECT_TRUE(StaticSolver(m).solve(initial_controls(m), 1.0, {}, rest).limits_met);
     EXPECT_LE(largest_cell_change(m, rest.position), 1e-3 + 1e-4);
     EXPECT_TRUE(act(rest.reactions));
   }
@@ -311,8 +317,8 @@ TEST(Constraints, VolumeLimitsHold) {
 TEST(Constraints, ABoxRestsOnTheGroundWhereItIsPutDown) {
   const Model m = box_above_ground(soft(1e4), 0.03, 0.5);
   State s = initial_state(m);
-  const StaticReport report = StaticSolver(m).solve(initial_controls(m), 1.0, {}, s);
-  EXPECT_TRUE(report.within);
+  const StepReport report = StaticSolver(m).solve(initial_controls(m), 1.0, {}, s);
+  EXPECT_TRUE(report.limits_met);
   EXPECT_EQ(report.contacts, 9);
   EXPECT_NEAR(lowest(m, s), 0.0, 1e-4 * 0.05);
   Vec3 push = Vec3::Zero(), drift = Vec3::Zero();
@@ -348,7 +354,7 @@ TEST(Constraints, TangledBodiesAreLedBack) {
       ImplicitStepper stepper(m);
       int righted = 0;
       for (int i = 0; i < 90; ++i)
-        righted += stepper.step(frame, initial_controls(m), {}, s).righted;
+        righted += stepper.step(frame, initial_controls(m), {}, s).recovered;
       EXPECT_GT(righted, 0);
       EXPECT_LT(righted, 20);
       const std::vector<Vec3> shape = rest_shape_at(m, m.bodies[0], s.position);

@@ -37,8 +37,8 @@ TEST(Grabs, VerletAndImplicitStepsCarryABodyToTheSameRest) {
       options.scheme = Scheme::backward_euler;
       for (int i = 0; i < 200; ++i) stepper.step(0.05, controls, options, state);
     } else {
-      Workspace workspace(m);
-      for (int i = 0; i < 12000; ++i) verlet_step(m, controls, 1e-3, state, workspace);
+      VerletStepper verlet(m, Precision::double_);
+      for (int i = 0; i < 12000; ++i) verlet.step(1e-3, controls, state);
     }
     return state;
   };

@@ -12,6 +12,7 @@
 #include "sinew/solver/static.h"
 #include "sinew/solver/verlet.h"
 #include "tests/support/effort.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -119,9 +120,9 @@ TEST(Implicit, ShortStepsAreVerlets) {
     m.pins.push_back({"top", test::nodes_at(m, 1, 0.05), {}});
     finish(m);
     State verlet = initial_state(m);
-    Workspace workspace(m);
+    VerletStepper explicit_stepper(m, Precision::double_);
     const double t = 0.1;
-    for (int i = 0; i < 2000; ++i) verlet_step(m, initial_controls(m), t / 2000, verlet, workspace);
+    for (int i = 0; i < 2000; ++i) explicit_stepper.step(t / 2000, initial_controls(m), verlet);
     double error[2];
     for (int k = 0; k < 2; ++k) {
       const int steps = k == 0 ? 20 : 40;
@@ -170,8 +171,7 @@ TEST(Implicit, EnergyAccountBalancesUpToTheScheme) {
   finish(m);
   const auto drift = [&](int steps) {
     const State s = run(m, 0.2 / steps, steps, Scheme::sdirk2);
-    Workspace workspace(m);
-    const Energies e = measure_energies(m, initial_controls(m), s, workspace);
+    const Energies e = test::energies_at(m, initial_controls(m), s);
     EXPECT_GT(e.dissipated, 0.0);
     return std::abs(e.total()) / e.dissipated;
   };
@@ -194,8 +194,7 @@ TEST(Implicit, TheWorkOfAnObstacleIsInTheEnergyAccount) {
   add_obstacle(m, {"ball", Vec3(0, -0.085, 0), 0.035, 1e7, path});
   finish(m);
   const State s = run(m, 0.001, 300, Scheme::sdirk2);  // backward Euler loses energy by itself
-  Workspace workspace(m);
-  const Energies e = measure_energies(m, initial_controls(m), s, workspace);
+  const Energies e = test::energies_at(m, initial_controls(m), s);
   EXPECT_GT(e.work_in, 1e-5);
   EXPECT_NEAR(e.total(), 0.0, 0.03 * e.work_in);
 }

@@ -10,6 +10,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/solver/block_cholesky.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -44,7 +45,6 @@ Model clamped_bar(Index k, const Material& material) {
 
 // The assembled matrix against the matrix-free product, at a deformed state of a bar.
 double difference(const Model& m, double inertia, double rate) {
-  Workspace workspace(m);
   State s = initial_state(m);
   const Field jitter = noise(m, 2e-3, 1);
   for (std::size_t i = 0; i < jitter.size(); ++i) s.position[i] += jitter[i];
@@ -55,16 +55,13 @@ double difference(const Model& m, double inertia, double rate) {
                       .rate = rate,
                       .from = &lag,
                       .lag = &lag};
-  compute_forces(m, initial_controls(m), s, workspace);
   TangentMatrix matrix(m);
-  matrix.assemble(objective, s.position, 0.0, workspace);
+  matrix.assemble(objective, s.position, 0.0, compute_tet_state(m, s.position));
 
   const Field u = noise(m, 1.0, 2);
   Field plain(u.size()), damped(u.size());
-  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, u, Tangent::full,
-                          workspace, plain);
-  stiffness_damping_times({m, initial_controls(m), lag}, 0.0, 1.0, u, Tangent::full, workspace,
-                          damped);
+  test::tangent_times({m, initial_controls(m), s.position}, 1.0, 0.0, u, Tangent::full, plain);
+  test::tangent_times({m, initial_controls(m), lag}, 0.0, 1.0, u, Tangent::full, damped);
   Field4 u4(u.size()), fast(u.size());
   for (std::size_t i = 0; i < u.size(); ++i) {
     plain[i] += rate * damped[i];
@@ -106,16 +103,14 @@ int iterations(Index k, double young, double poisson, double inertia) {
   material.young = young;
   material.poisson = poisson;
   const Model m = clamped_bar(k, material);
-  Workspace workspace(m);
   const State s = initial_state(m);
-  compute_forces(m, initial_controls(m), s, workspace);
   LinearSolver linear(m);
   Objective objective{.model = m,
                       .controls = initial_controls(m),
                       .inertia = inertia,
                       .rate = 0.0,
                       .lag = &m.rest_position};
-  linear.assemble(objective, s.position, 0.0, workspace);
+  linear.assemble(objective, s.position, 0.0, compute_tet_state(m, s.position));
   Field p;
   return linear.solve(outer_forces(m, initial_controls(m), s), 1e-3, 1000, {}, p);
 }
@@ -138,18 +133,16 @@ TEST(TwoLevel, IterationsStayBoundedWithStiffness) {
 TEST(LinearSolver, GivesTheSolutionToItsForcing) {
   Material material;
   const Model m = clamped_bar(2, material);
-  Workspace workspace(m);
   const State s = initial_state(m);
-  compute_forces(m, initial_controls(m), s, workspace);
   LinearSolver linear(m);
-  linear.assemble(Objective{m, initial_controls(m)}, s.position, 0.0, workspace);
+  linear.assemble(Objective{m, initial_controls(m)}, s.position, 0.0,
+                  compute_tet_state(m, s.position));
   const Field f = outer_forces(m, initial_controls(m), s);
   Field p;
   for (const double forcing : {1e-1, 1e-2, 1e-3}) {  // single precision reaches 3e-4 here
     linear.solve(f, forcing, 1000, {}, p);
     Field back(p.size());
-    stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full,
-                            workspace, back);
+    test::tangent_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full, back);
     add(back, -1.0, f);
     EXPECT_LT(std::sqrt(dot(back, back)), 1.2 * forcing * std::sqrt(dot(f, f)));
   }
@@ -159,19 +152,17 @@ TEST(LinearSolver, ABodyThatNothingHoldsIsSolvedUpToItsMotion) {
   Material material;
   Model m = test::tissue_box(material, {3, 3, 3});
   finish(m);
-  Workspace workspace(m);
   const State s = initial_state(m);
-  compute_forces(m, initial_controls(m), s, workspace);
   LinearSolver linear(m);
-  linear.assemble(Objective{m, initial_controls(m)}, s.position, 0.0, workspace);
+  linear.assemble(Objective{m, initial_controls(m)}, s.position, 0.0,
+                  compute_tet_state(m, s.position));
   // Forces that cancel: what the tangent makes of a displacement.
   Field f(m.rest_position.size());
-  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, noise(m, 1.0, 3),
-                          Tangent::full, workspace, f);
+  test::tangent_times({m, initial_controls(m), s.position}, 1.0, 0.0, noise(m, 1.0, 3),
+                      Tangent::full, f);
   Field p, back(f.size());
   linear.solve(f, 1e-3, 1000, {}, p);
-  stiffness_damping_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full,
-                          workspace, back);
+  test::tangent_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full, back);
   add(back, -1.0, f);
   EXPECT_LT(std::sqrt(dot(back, back)), 2e-3 * std::sqrt(dot(f, f)));
 }

@@ -18,8 +18,8 @@ using test::tissue_box;
 
 TEST(StableStep, UndampedOscillatorByHand) {
   const Model m = oscillator(0.0, 1.0);
-  Workspace w(m);
-  const StableStep s = find_stable_step(m, initial_controls(m), m.rest_position, w);
+  ForceEvaluator forces(m, Precision::double_);
+  const StableStep s = find_stable_step(m, initial_controls(m), m.rest_position, forces);
   EXPECT_NEAR(s.step, 2.0 / 5.0, 1e-10);
   EXPECT_NEAR(s.omega_max, 5.0, 1e-10);
   EXPECT_EQ(s.zeta, 0.0);
@@ -28,8 +28,8 @@ TEST(StableStep, UndampedOscillatorByHand) {
 TEST(StableStep, DampedOscillatorFollowsTheFormula) {
   for (const double zeta : {0.1, 0.5, 1.0, 3.0}) {
     const Model m = oscillator(2 * zeta * std::sqrt(50.0 * 2.0), 1.0);
-    Workspace w(m);
-    const StableStep s = find_stable_step(m, initial_controls(m), m.rest_position, w);
+    ForceEvaluator forces(m, Precision::double_);
+    const StableStep s = find_stable_step(m, initial_controls(m), m.rest_position, forces);
     EXPECT_NEAR(s.step, 2.0 / 5.0 * (std::sqrt(1 + zeta * zeta) - zeta), 1e-3 * s.step) << zeta;
     EXPECT_NEAR(s.zeta, zeta, 1e-9);
   }
@@ -38,8 +38,8 @@ TEST(StableStep, DampedOscillatorFollowsTheFormula) {
 TEST(StableStep, NothingThatMovesHasNoLimit) {
   Model m = point_masses({{Vec3(0, 0, 0), 1.0}});
   finish(m);
-  Workspace w(m);
-  EXPECT_TRUE(std::isinf(find_stable_step(m, initial_controls(m), m.rest_position, w).step));
+  ForceEvaluator forces(m, Precision::double_);
+  EXPECT_TRUE(std::isinf(find_stable_step(m, initial_controls(m), m.rest_position, forces).step));
 }
 
 // Whether the linear motion about rest stays small for many steps of length h.
@@ -50,10 +50,10 @@ bool stays_bounded(const Model& m, double h) {
     const double sign = (i * 2654435761u >> 7) % 2 == 0 ? 1.0 : -1.0;
     s.position[i] += sign * 1e-9 * Vec3(1.0, -0.7, 0.4);
   }
-  Workspace w(m);
+  VerletStepper stepper(m, Precision::double_);
   for (int i = 0; i < 3000; ++i) {
     try {
-      verlet_step(m, initial_controls(m), h, s, w);
+      stepper.step(h, initial_controls(m), s);
     } catch (const Error&) {
       return false;
     }
@@ -72,8 +72,8 @@ TEST(StableStep, IsSharpOnTissueWithAndWithoutDamping) {
     m.start_gravity = Vec3::Zero();
     m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
     finish(m);
-    Workspace w(m);
-    const double h = find_stable_step(m, initial_controls(m), m.rest_position, w).step;
+    ForceEvaluator forces(m, Precision::double_);
+    const double h = find_stable_step(m, initial_controls(m), m.rest_position, forces).step;
     EXPECT_TRUE(stays_bounded(m, 0.97 * h)) << zeta;
     EXPECT_FALSE(stays_bounded(m, 1.05 * h)) << zeta;
   }
@@ -86,8 +86,8 @@ TEST(StableStep, IsSharpOnViscousTissue) {
     m.start_gravity = Vec3::Zero();
     m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
     finish(m);
-    Workspace w(m);
-    const double h = find_stable_step(m, initial_controls(m), m.rest_position, w).step;
+    ForceEvaluator forces(m, Precision::double_);
+    const double h = find_stable_step(m, initial_controls(m), m.rest_position, forces).step;
     EXPECT_TRUE(stays_bounded(m, 0.97 * h)) << zeta;
     EXPECT_FALSE(stays_bounded(m, 1.05 * h)) << zeta;
   }
@@ -97,10 +97,10 @@ TEST(StableStep, WatchingFromTheKnownModeFindsTheSameStep) {
   for (const double zeta : {0.0, 0.2}) {
     Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = zeta}, {4, 4, 4});
     finish(m);
-    Workspace w(m);
-    StableStep found = find_stable_step(m, initial_controls(m), m.rest_position, w);
-    const double watched =
-        watch_stable_step(m, initial_controls(m), m.rest_position, 0.9 * found.step, found.mode, w);
+    ForceEvaluator forces(m, Precision::double_);
+    StableStep found = find_stable_step(m, initial_controls(m), m.rest_position, forces);
+    const double watched = watch_stable_step(m, initial_controls(m), m.rest_position,
+                                             0.9 * found.step, found.mode, forces);
     EXPECT_LT(watched, 1.01 * found.step);
     EXPECT_GT(watched, 0.95 * found.step);
   }
@@ -109,15 +109,15 @@ TEST(StableStep, WatchingFromTheKnownModeFindsTheSameStep) {
 TEST(StableStep, StretchStiffensAndIsSeenAfterAFewLooks) {
   Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.0}, {4, 4, 4});
   finish(m);
-  Workspace w(m);
-  StableStep rest = find_stable_step(m, initial_controls(m), m.rest_position, w);
+  ForceEvaluator forces(m, Precision::double_);
+  StableStep rest = find_stable_step(m, initial_controls(m), m.rest_position, forces);
   std::vector<Vec3> stretched = m.rest_position;
   for (Vec3& p : stretched) p *= 3.0;
   double h = rest.step;
   for (int look = 0; look < 5; ++look)
-    h = watch_stable_step(m, initial_controls(m), stretched, h, rest.mode, w);
+    h = watch_stable_step(m, initial_controls(m), stretched, h, rest.mode, forces);
   EXPECT_LT(h, 0.95 * rest.step);
-  EXPECT_NEAR(h, find_stable_step(m, initial_controls(m), stretched, w).step, 0.02 * h);
+  EXPECT_NEAR(h, find_stable_step(m, initial_controls(m), stretched, forces).step, 0.02 * h);
 }
 
 TEST(StableStep, DescribesTheStiffestSpring) {

@@ -14,6 +14,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/solver/stable_step.h"
 #include "tests/support/effort.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -25,8 +26,8 @@ using test::tissue_box;
 
 State run(const Model& m, double h, int steps) {
   State s = initial_state(m);
-  Workspace w(m);
-  for (int i = 0; i < steps; ++i) verlet_step(m, initial_controls(m), h, s, w);
+  VerletStepper stepper(m, Precision::double_);
+  for (int i = 0; i < steps; ++i) stepper.step(h, initial_controls(m), s);
   return s;
 }
 
@@ -61,12 +62,12 @@ TEST(Verlet, MatchesPositionVerletStepByStep) {
   const double h = 0.01;
   double before = 0.1 + (-2.5) * h * h / 2, now = 0.1;  // extension; a = -25 * extension
   State s = initial_state(m);
-  Workspace w(m);
+  VerletStepper stepper(m, Precision::double_);
   for (int i = 0; i < 500; ++i) {
     const double next = 2 * now - before - 25.0 * now * h * h;
     before = now;
     now = next;
-    verlet_step(m, initial_controls(m), h, s, w);
+    stepper.step(h, initial_controls(m), s);
     ASSERT_NEAR(s.position[1].x() - 1.0, now, 1e-12);
   }
 }
@@ -75,16 +76,16 @@ TEST(Verlet, TalksVelocityIsTheCentralDifference) {
   const Model m = oscillator();
   const double h = 0.01;
   State s = initial_state(m);
-  Workspace w(m);
+  VerletStepper stepper(m, Precision::double_);
   Vec3 before, at;
   for (int i = 0; i < 50; ++i) {
     before = s.position[1];
-    verlet_step(m, initial_controls(m), h, s, w);
+    stepper.step(h, initial_controls(m), s);
   }
   at = s.position[1];
-  compute_forces(m, initial_controls(m), s, w);
-  const Vec3 v = synchronous_velocity(m, s, w)[1];
-  verlet_step(m, initial_controls(m), h, s, w);
+  const std::vector<Vec3> force = test::forces_at(m, initial_controls(m), s).force;
+  const Vec3 v = synchronous_velocity(m, s, force)[1];
+  stepper.step(h, initial_controls(m), s);
   EXPECT_NEAR(v.x(), (s.position[1].x() - before.x()) / (2 * h), 1e-13);
   EXPECT_NE(at.x(), before.x());
 }
@@ -94,12 +95,12 @@ TEST(Verlet, ParabolaOfAThrowIsExactWithAnyStepLengths) {
   m.start_gravity = Vec3(0, -9.81, 0);
   finish(m);
   State s = initial_state(m);
-  Workspace w(m);
+  VerletStepper stepper(m, Precision::double_);
   for (const double h : {0.01, 0.01, 0.003, 0.02, 0.007, 0.01})
-    verlet_step(m, initial_controls(m), h, s, w);
+    stepper.step(h, initial_controls(m), s);
   const double t = s.time;
-  compute_forces(m, initial_controls(m), s, w);
-  EXPECT_NEAR(synchronous_velocity(m, s, w)[0].y(), 5 - 9.81 * t, 1e-13);
+  const std::vector<Vec3> force = test::forces_at(m, initial_controls(m), s).force;
+  EXPECT_NEAR(synchronous_velocity(m, s, force)[0].y(), 5 - 9.81 * t, 1e-13);
   EXPECT_NEAR(s.position[0].y(), 5 * t - 9.81 / 2 * t * t, 1e-14);
 }
 
@@ -131,10 +132,10 @@ TEST(Verlet, DragDecaysExponentially) {
 TEST(Verlet, DashpotHeatIsTheEnergyLost) {
   const Model m = oscillator(2.0);
   State s = initial_state(m);
-  Workspace w(m);
-  const double start = measure_energies(m, initial_controls(m), s, w).total();
-  for (int i = 0; i < 20'000; ++i) verlet_step(m, initial_controls(m), 1e-3, s, w);
-  const Energies e = measure_energies(m, initial_controls(m), s, w);
+  VerletStepper stepper(m, Precision::double_);
+  const double start = test::energies_at(m, initial_controls(m), s).total();
+  for (int i = 0; i < 20'000; ++i) stepper.step(1e-3, initial_controls(m), s);
+  const Energies e = test::energies_at(m, initial_controls(m), s);
   EXPECT_NEAR(e.dissipated, start, 2e-3 * start);
   EXPECT_LT(e.kinetic + e.elastic, 1e-3 * start);
 }
@@ -167,12 +168,13 @@ TEST(Verlet, FreeFlightKeepsMomentumAndAngularMomentumToRounding) {
   m.start_gravity = Vec3::Zero();
   add_body(m, spec);
   finish(m);
-  Workspace w(m);
+  VerletStepper stepper(m, Precision::double_);
   State s = initial_state(m);
-  const double h = 0.5 * find_stable_step(m, initial_controls(m), s.position, w).step;
-  verlet_step(m, initial_controls(m), h, s, w);
+  const double h =
+      0.5 * find_stable_step(m, initial_controls(m), s.position, stepper.forces()).step;
+  stepper.step(h, initial_controls(m), s);
   const Vec3 p = momentum(m, s), l = angular_momentum(m, s);
-  for (int i = 0; i < 2000; ++i) verlet_step(m, initial_controls(m), h, s, w);
+  for (int i = 0; i < 2000; ++i) stepper.step(h, initial_controls(m), s);
   EXPECT_LT((momentum(m, s) - p).norm(), 1e-13 * p.norm() * 10);
   EXPECT_LT((angular_momentum(m, s) - l).norm(), 1e-12 * l.norm());
   // It has really deformed and turned.
@@ -183,20 +185,21 @@ TEST(Verlet, EnergyStaysBoundedWithoutDampingOver100000Steps) {
   Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.0}, {2, 2, 2});
   m.pins = {{"floor", test::nodes_at(m, 1, -0.05), {}}};
   finish(m);
-  Workspace w(m);
+  VerletStepper stepper(m, Precision::double_);
   State s = initial_state(m);
   for (std::size_t i = 0; i < s.position.size(); ++i) {
     if (m.inverse_mass[i] > 0) s.position[i] *= 1.05;  // rings in many modes
   }
-  const double h = 0.5 * find_stable_step(m, initial_controls(m), s.position, w).step;
-  const double start = measure_energies(m, initial_controls(m), s, w).total();
+  const double h =
+      0.5 * find_stable_step(m, initial_controls(m), s.position, stepper.forces()).step;
+  const double start = test::energies_at(m, initial_controls(m), s).total();
   double worst_early = 0.0, worst_late = 0.0;
   const int steps = test::effort(100'000);
   for (int i = 1; i <= steps; ++i) {
-    verlet_step(m, initial_controls(m), h, s, w);
+    stepper.step(h, initial_controls(m), s);
     if (i % 100 != 0) continue;
     const double off =
-        std::abs(measure_energies(m, initial_controls(m), s, w).total() - start) / start;
+        std::abs(test::energies_at(m, initial_controls(m), s).total() - start) / start;
     double& worst = i <= steps / 10 ? worst_early : worst_late;
     worst = std::max(worst, off);
   }
@@ -213,12 +216,13 @@ TEST(Verlet, LimitsHoldToTheirToleranceAtTheEndOfAStep) {
   m.limit_sweeps = 500;
   m.limit_tolerance = 1e-3;
   finish(m);
-  Workspace w(m);
+  VerletStepper stepper(m, Precision::double_);
   State s = initial_state(m);
-  const double h = 0.5 * find_stable_step(m, initial_controls(m), s.position, w).step;
+  const double h =
+      0.5 * find_stable_step(m, initial_controls(m), s.position, stepper.forces()).step;
   int sweeps = 0;
   for (int i = 0; i < 600; ++i) {
-    const VerletReport r = verlet_step(m, initial_controls(m), h, s, w);
+    const StepReport r = stepper.step(h, initial_controls(m), s);
     ASSERT_TRUE(r.limits_met);
     ASSERT_LE(measure_limit_violation(m, s.position), 1e-3);
     sweeps += r.limit_sweeps;
@@ -233,8 +237,8 @@ TEST(Verlet, LimitsReportWhenTheSweepsDidNotDo) {
   m.limit_sweeps = 5;
   finish(m);
   State s = initial_state(m);
-  Workspace w(m);
-  const VerletReport r = verlet_step(m, initial_controls(m), 1e-3, s, w);
+  VerletStepper stepper(m, Precision::double_);
+  const StepReport r = stepper.step(1e-3, initial_controls(m), s);
   EXPECT_FALSE(r.limits_met);
   EXPECT_EQ(r.limit_sweeps, 5);
 }
@@ -253,8 +257,7 @@ TEST(Verlet, PinsFollowTheirPathsAndTheirWorkIsCounted) {
   const State s = run(m, 1e-4, 20'000);
   EXPECT_NEAR(s.position[2].x(), 2.5, 1e-15);
   EXPECT_NEAR(s.position[1].x(), 1.25, 1e-6);
-  Workspace w(m);
-  const Energies e = measure_energies(m, initial_controls(m), s, w);
+  const Energies e = test::energies_at(m, initial_controls(m), s);
   EXPECT_NEAR(e.elastic, 2 * 0.5 * 100 * 0.25 * 0.25, 1e-4);
   EXPECT_NEAR(e.work_in, e.elastic + e.dissipated, 1e-3 * e.work_in);
 }
@@ -266,8 +269,7 @@ TEST(Verlet, LoadsActWhileTheyLastAndTheirWorkIsCounted) {
   const State s = run(m, 1e-3, 1000);
   // 4 N on 2 kg for 0.5 s: 1 m/s each, 2 J in all.
   EXPECT_NEAR(s.half_velocity[0].x(), 1.0, 2e-3);
-  Workspace w(m);
-  EXPECT_NEAR(measure_energies(m, initial_controls(m), s, w).kinetic, s.energy.work_in, 1e-12);
+  EXPECT_NEAR(test::energies_at(m, initial_controls(m), s).kinetic, s.energy.work_in, 1e-12);
 }
 
 TEST(Verlet, AMovingObstaclePressesAndItsWorkIsCounted) {
@@ -279,15 +281,16 @@ TEST(Verlet, AMovingObstaclePressesAndItsWorkIsCounted) {
   path.smooth = true;
   add_obstacle(m, {"ball", Vec3(0.01, 0.09, 0), 0.04, 2e8, path});
   finish(m);
-  Workspace w(m);
+  VerletStepper stepper(m, Precision::double_);
   State s = initial_state(m);
-  const double h = 0.5 * find_stable_step(m, initial_controls(m), s.position, w).step;
-  while (s.time < 0.6) verlet_step(m, initial_controls(m), h, s, w);
+  const double h =
+      0.5 * find_stable_step(m, initial_controls(m), s.position, stepper.forces()).step;
+  while (s.time < 0.6) stepper.step(h, initial_controls(m), s);
   const ObstacleReading ball = read_obstacles(m, s.position, s.time)[0];
   EXPECT_GT(ball.contacts, 3);
   EXPECT_GT(ball.force.y(), 1.0);
   EXPECT_LT(ball.depth, 2e-4);  // of 20 mm
-  const Energies e = measure_energies(m, initial_controls(m), s, w);
+  const Energies e = test::energies_at(m, initial_controls(m), s);
   EXPECT_GT(e.work_in, 0.0);
   EXPECT_LT(e.kinetic, 1e-2 * e.work_in);
   EXPECT_LT(std::abs(e.total()), 0.01 * e.work_in);
@@ -299,19 +302,20 @@ TEST(Verlet, AnElasticImpactOnAnObstacleKeepsTheEnergy) {
   for (Vec3& v : m.start_velocity) v = Vec3(0, -0.5, 0);
   add_obstacle(m, {"ball", Vec3(0.01, -0.1, 0), 0.04, 2e8});
   finish(m);
-  Workspace w(m);
+  VerletStepper stepper(m, Precision::double_);
   State s = initial_state(m);
-  const double start = measure_energies(m, initial_controls(m), s, w).total();
-  const double h = 0.3 * find_stable_step(m, initial_controls(m), s.position, w).step;
+  const double start = test::energies_at(m, initial_controls(m), s).total();
+  const double h =
+      0.3 * find_stable_step(m, initial_controls(m), s.position, stepper.forces()).step;
   double deepest = 0.0;
   while (s.time < 0.3) {
-    verlet_step(m, initial_controls(m), h, s, w);
-    deepest = std::max(deepest, measure_energies(m, initial_controls(m), s, w).contact);
+    stepper.step(h, initial_controls(m), s);
+    deepest = std::max(deepest, test::energies_at(m, initial_controls(m), s).contact);
   }
   EXPECT_GT(deepest, 1e-3 * start);
   EXPECT_EQ(read_obstacles(m, s.position, s.time)[0].contacts, 0);
   EXPECT_GT(momentum(m, s).y(), 0.0);  // it came back
-  EXPECT_NEAR(measure_energies(m, initial_controls(m), s, w).total(), start, 0.02 * start);
+  EXPECT_NEAR(test::energies_at(m, initial_controls(m), s).total(), start, 0.02 * start);
 }
 
 TEST(Verlet, LoadsRampUp) {
@@ -352,10 +356,10 @@ TEST(Verlet, FindsBackFromTangledStarts) {
       finish(m);
       State state = initial_state(m);
       test::tangle_nodes(m, tangle, state.position);
-      Workspace workspace(m);
+      VerletStepper stepper(m, Precision::double_);
       int righted = 0;
       for (int i = 0; i < 4000; ++i)
-        righted += verlet_step(m, initial_controls(m), 2e-4, state, workspace).righted;
+        righted += stepper.step(2e-4, initial_controls(m), state).recovered;
       EXPECT_GT(righted, 0);
       EXPECT_LT(righted, 2000);
       const std::vector<Vec3> shape = rest_shape_at(m, m.bodies[0], state.position);

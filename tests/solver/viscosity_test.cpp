@@ -13,6 +13,7 @@
 #include "sinew/solver/stable_step.h"
 #include "sinew/solver/verlet.h"
 #include "tests/support/effort.h"
+#include "tests/support/forces.h"
 #include "tests/support/models.h"
 
 namespace sinew {
@@ -113,10 +114,12 @@ TEST(Viscosity, IsTheSameToBothSteppers) {
   const Model m = short_bar(material, 2);
   const std::vector<Vec3> shape = torsion(m);
   const Swing implicit = measure_implicit(m, shape, 0.004);
-  Workspace workspace(m);
-  const double h = 0.2 * find_stable_step(m, initial_controls(m), m.rest_position, workspace).step;
+  VerletStepper explicit_stepper(m, Precision::double_);
+  const double h =
+      0.2 *
+      find_stable_step(m, initial_controls(m), m.rest_position, explicit_stepper.forces()).step;
   const Swing verlet =
-      measure(m, shape, h, [&](State& s) { verlet_step(m, initial_controls(m), h, s, workspace); });
+      measure(m, shape, h, [&](State& s) { explicit_stepper.step(h, initial_controls(m), s); });
   EXPECT_NEAR(implicit.zeta, verlet.zeta, 0.01 * verlet.zeta);
   EXPECT_NEAR(implicit.omega, verlet.omega, 0.01 * verlet.omega);
 }
@@ -125,14 +128,15 @@ TEST(Viscosity, IsTheSameToBothSteppers) {
 TEST(Viscosity, HeatIsInTheEnergyAccount) {
   Model m = short_bar(viscous(0.3), 2);
   m.start_gravity = Vec3(0.0, -9.81, 0.0);
-  Workspace workspace(m);
-  const double stable = find_stable_step(m, initial_controls(m), m.rest_position, workspace).step;
+  VerletStepper explicit_stepper(m, Precision::double_);
+  const double stable =
+      find_stable_step(m, initial_controls(m), m.rest_position, explicit_stepper.forces()).step;
   double drift[2];
   for (const int k : {0, 1}) {
     const double h = (k == 0 ? 0.4 : 0.2) * stable;
     State s = initial_state(m);
-    while (s.time < test::effort(0.3)) verlet_step(m, initial_controls(m), h, s, workspace);
-    const Energies e = measure_energies(m, initial_controls(m), s, workspace);
+    while (s.time < test::effort(0.3)) explicit_stepper.step(h, initial_controls(m), s);
+    const Energies e = test::energies_at(m, initial_controls(m), s);
     EXPECT_GT(e.dissipated, 0.05 * e.elastic);
     drift[k] = std::abs(e.total()) / e.dissipated;
   }
@@ -141,7 +145,7 @@ TEST(Viscosity, HeatIsInTheEnergyAccount) {
   ImplicitStepper stepper(m);
   State s = initial_state(m);
   for (int i = 0; i < test::effort(150); ++i) stepper.step(0.002, initial_controls(m), {}, s);
-  const Energies e = measure_energies(m, initial_controls(m), s, workspace);
+  const Energies e = test::energies_at(m, initial_controls(m), s);
   EXPECT_LT(std::abs(e.total()), 0.05 * e.dissipated);
 }
 
@@ -161,9 +165,11 @@ TEST(Viscosity, LetsAFreeBodyTurn) {  // a spin about a main axis goes on
     return l.z();
   };
   const double before = spin();
-  Workspace workspace(m);
-  const double h = 0.5 * find_stable_step(m, initial_controls(m), m.rest_position, workspace).step;
-  for (int i = 0; i < test::effort(2000); ++i) verlet_step(m, initial_controls(m), h, s, workspace);
+  VerletStepper explicit_stepper(m, Precision::double_);
+  const double h =
+      0.5 *
+      find_stable_step(m, initial_controls(m), m.rest_position, explicit_stepper.forces()).step;
+  for (int i = 0; i < test::effort(2000); ++i) explicit_stepper.step(h, initial_controls(m), s);
   EXPECT_NEAR(spin(), before, 1e-3 * before);
 }
 

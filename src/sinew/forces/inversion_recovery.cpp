@@ -6,8 +6,6 @@
 #include "sinew/base/parallel.h"
 #include "sinew/base/rotation.h"
 #include "sinew/forces/network.h"
-#include "sinew/forces/packed.h"
-#include "sinew/forces/volume.h"
 
 namespace sinew {
 namespace {
@@ -61,36 +59,19 @@ double frequency(const Model& model, const State& state, const Body& body, const
 
 }  // namespace
 
-int find_tangled(const Model& model, Workspace& workspace) {
-  workspace.tangled.assign(model.bodies.size(), 0);
-  if (!model.has_volume) return 0;
-  const auto inverted_in = [&](std::size_t t) {
-    const bool kept = model.tet_shear[t] > 0.0 || model.tet_bulk[t] > 0.0 || model.cells[t][0] >= 0;
-    return kept && workspace.tet_volume[t] <= 0.0 ? 1 : 0;
-  };
-  int tangled = 0;
+std::vector<Index> find_tangled(const Model& model, std::span<const LowTet> low) {
+  std::vector<Index> tangled;
+  if (low.empty()) return tangled;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Range tets = model.bodies[b].tets;
-    const auto first = uz(tets.begin);
-    Index inverted = 0;
-    if (!workspace.has_tets) {
-      for (const Index t : workspace.packed->low_tets()) {
-        if (tets.contains(t)) inverted += inverted_in(uz(t));
-      }
-    } else {
-      inverted = parallel_reduce(
-          tets.size(), Index{0},
-          [&](Range r) {
-            Index count = 0;
-            for (auto k = uz(r.begin); k < uz(r.end); ++k) count += inverted_in(first + k);
-            return count;
-          },
-          [](Index a, Index c) { return a + c; });
-    }
-    if (inverted > tangled_share * tets.size()) {
-      workspace.tangled[b] = 1;
-      ++tangled;
-    }
+    const auto inverted = std::count_if(low.begin(), low.end(), [&](const LowTet& tet) {
+      const auto t = uz(tet.tet);
+      const bool kept =
+          model.tet_shear[t] > 0.0 || model.tet_bulk[t] > 0.0 || model.cells[t][0] >= 0;
+      return kept && tet.volume <= 0.0 && tets.contains(tet.tet);
+    });
+    if (static_cast<double>(inverted) > tangled_share * tets.size())
+      tangled.push_back(static_cast<Index>(b));
   }
   return tangled;
 }
@@ -127,20 +108,20 @@ std::vector<Vec3> rest_shape_at(const Model& model, const Body& body, std::span<
   return shape;
 }
 
-void put_tangled_bodies_at_rest(const Model& model, const Workspace& workspace, State& state) {
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (workspace.tangled[b] == 0) continue;
-    const std::vector<Vec3> shape = rest_shape_at(model, model.bodies[b], state.position);
-    std::copy(shape.begin(), shape.end(), state.position.begin() + model.bodies[b].nodes.begin);
+void put_at_rest_shape(const Model& model, std::span<const Index> bodies, State& state) {
+  for (const Index b : bodies) {
+    const Body& body = model.bodies[uz(b)];
+    const std::vector<Vec3> shape = rest_shape_at(model, body, state.position);
+    std::copy(shape.begin(), shape.end(), state.position.begin() + body.nodes.begin);
   }
 }
 
-void right_tangled_bodies(const Model& model, const State& state, double h, Workspace& workspace) {
+std::vector<Vec3> recovery_forces(const Model& model, const State& state, double h,
+                                  std::span<const Index> tangled, std::vector<Vec3> force) {
   const std::vector<Vec3>& x = state.position;
-  if (!workspace.has_tets) compute_volume_pressures(model, x, workspace);
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (workspace.tangled[b] == 0) continue;
-    const Body& body = model.bodies[b];
+  const TetState tets = compute_tet_state(model, x);
+  for (const Index b : tangled) {
+    const Body& body = model.bodies[uz(b)];
     const std::vector<Vec3> goal = rest_shape_at(model, body, x);
     const Vec3 drift =
         count_held(model, body) > 0 ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
@@ -148,20 +129,20 @@ void right_tangled_bodies(const Model& model, const State& state, double h, Work
     parallel_for(body.nodes.size(), [&](Index k) {
       const auto i = uz(body.nodes.begin + k);
       if (model.inverse_mass[i] == 0.0) return;
-      Vec3 law = push_of_tets(model, workspace, body.nodes.begin + k);
+      Vec3 law = push_of_tets(model, tets, body.nodes.begin + k);
       if (!model.network_start.empty()) law += network_pull(model, x, body.nodes.begin + k);
-      workspace.force[i] -= law;
-      workspace.force[i] +=
+      force[i] -= law;
+      force[i] +=
           model.mass[i] * w * (w * (goal[uz(k)] - x[i]) - 2.0 * (state.half_velocity[i] - drift));
     });
   }
+  return force;
 }
 
 void lead_tangled_bodies(const Model& model, const Controls& controls, double h,
-                         const Workspace& workspace, State& state) {
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (workspace.tangled[b] == 0) continue;
-    const Body& body = model.bodies[b];
+                         std::span<const Index> tangled, State& state) {
+  for (const Index b : tangled) {
+    const Body& body = model.bodies[uz(b)];
     const std::vector<Vec3> goal = rest_shape_at(model, body, state.position);
     const bool held = count_held(model, body) > 0;
     const Vec3 drift = held ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
@@ -180,10 +161,9 @@ void lead_tangled_bodies(const Model& model, const Controls& controls, double h,
   }
 }
 
-void calm_bodies(const Model& model, std::span<const char> which, State& state) {
-  for (std::size_t b = 0; b < model.bodies.size(); ++b) {
-    if (which[b] == 0) continue;
-    const Body& body = model.bodies[b];
+void calm_bodies(const Model& model, std::span<const Index> bodies, State& state) {
+  for (const Index b : bodies) {
+    const Body& body = model.bodies[uz(b)];
     const Vec3 drift =
         count_held(model, body) > 0 ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
     parallel_for(body.nodes.size(), [&](Index k) {

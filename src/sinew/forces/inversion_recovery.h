@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "sinew/forces/workspace.h"
+#include "sinew/forces/volume.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
@@ -21,31 +21,32 @@ namespace sinew {
 // A body with volume terms is tangled when more than this share of its tets has v_t <= 0.
 inline constexpr double tangled_share = 0.05;
 
-// Fills workspace.tangled (bodies) from workspace.tet_volume; returns how many are.
-int find_tangled(const Model& model, Workspace& workspace);
+// The bodies that are tangled, rising. `low`: the tets near inversion (forces/volume.h).
+std::vector<Index> find_tangled(const Model& model, std::span<const LowTet> low);
 
 // The body's rest shape, moved rigidly: R X_i + c with the rotation R and the shift c that make
 // sum_i w_i |x_i - R X_i - c|^2 smallest. Weights: the masses; nodes whose motion is given weigh a
 // million times the rest together. [m] (nodes of the body)
 std::vector<Vec3> rest_shape_at(const Model& model, const Body& body, std::span<const Vec3> x);
 
-// Puts the bodies of workspace.tangled there. Sets positions, of held nodes too.
-void put_tangled_bodies_at_rest(const Model& model, const Workspace& workspace, State& state);
+// Puts these bodies there. Sets positions, of held nodes too.
+void put_at_rest_shape(const Model& model, std::span<const Index> bodies, State& state);
 
-// Replaces, on the free nodes of the bodies in workspace.tangled, the forces of network and volume
-// in workspace.force by  m w^2 (g_i - x_i) - 2 m w (v_i - v),  critically damped: g_i from
+// `force` [N] (nodes), at the state, with the part of network and volume on the free nodes of the
+// tangled bodies replaced by  m w^2 (g_i - x_i) - 2 m w (v_i - v),  critically damped: g_i from
 // rest_shape_at, v the body's mean velocity (0 where it is held), w eight times what a shear wave
 // takes to cross the body, at most 0.3 / h. h: length of the step [s].
-void right_tangled_bodies(const Model& model, const State& state, double h, Workspace& workspace);
+std::vector<Vec3> recovery_forces(const Model& model, const State& state, double h,
+                                  std::span<const Index> tangled, std::vector<Vec3> force);
 
-// The same pull over a step of any length, in closed form: on the free nodes of the bodies in
-// workspace.tangled,  x = g + (d + c h) e^-wh + v h,  d = x - g,  c = (v_i - v) + w d, with w not
-// limited; a body that nothing holds falls with gravity as a whole. Sets positions and velocities.
+// The same pull over a step of any length, in closed form: on the free nodes of the tangled bodies
+// x = g + (d + c h) e^-wh + v h,  d = x - g,  c = (v_i - v) + w d, with w not limited; a body that
+// nothing holds falls with gravity as a whole. Sets positions and velocities.
 void lead_tangled_bodies(const Model& model, const Controls& controls, double h,
-                         const Workspace& workspace, State& state);
+                         std::span<const Index> tangled, State& state);
 
-// Takes the speed of the pull from the bodies of `which` (bodies; 0: none): the mean velocity is
-// left, or none where a node is held.
-void calm_bodies(const Model& model, std::span<const char> which, State& state);
+// Takes the speed of the pull from these bodies: the mean velocity is left, or none where a node is
+// held.
+void calm_bodies(const Model& model, std::span<const Index> bodies, State& state);
 
 }  // namespace sinew

@@ -33,16 +33,14 @@ void NetworkTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
 }
 
 double VolumeTerm::energy(const Configuration& at) {
-  Workspace workspace(at.model);
-  return volume_energy(at.model, at.x, workspace);
+  return volume_energy(at.model, volumes_of_tets(at.model, at.x));
 }
 
 void VolumeTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
   if (!at.model.has_volume) return;
-  Workspace workspace(at.model);
-  compute_volume_pressures(at.model, at.x, workspace);
+  const TetState tets = compute_tet_state(at.model, at.x);
   for (Index i = 0; i < at.model.node_count(); ++i)
-    forces[uz(i)] += push_of_tets(at.model, workspace, i);
+    forces[uz(i)] += push_of_tets(at.model, tets, i);
 }
 
 double GravityTerm::energy(const Configuration& at) {
@@ -63,12 +61,11 @@ void GravityTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
 VolumeParts::VolumeParts(const Configuration& at) {
   const Model& m = at.model;
   if (!m.has_volume) return;
-  Workspace workspace(m);
-  compute_volume_pressures(m, at.x, workspace);
+  TetState tets = compute_tet_state(m, at.x);
   for (std::size_t t = 0; t < m.tets.size(); ++t)
-    stiffness.push_back(tet_volume_stiffness(m, workspace, t) / m.rest_volume[t]);
-  push = workspace.tet_pressure;
-  gradient = workspace.tet_gradient;
+    stiffness.push_back(tet_volume_stiffness(m, t, tets.volume[t]) / m.rest_volume[t]);
+  push = std::move(tets.pressure);
+  gradient = std::move(tets.gradient);
   for (std::size_t c = 0; c < m.cell_volume.size(); ++c) {
     Cell cell;
     cell.stiffness = m.cell_bulk[c] / m.cell_volume[c];

@@ -9,8 +9,6 @@
 namespace sinew {
 namespace {
 
-constexpr double low_ratio = guard_threshold + guard_margin;  // v/V
-
 // A body that has turned by less than this [rad] counts as not turned.
 constexpr double least_turn = 1e-9;
 

@@ -5,7 +5,6 @@
 #include <numeric>
 
 #include "sinew/base/parallel.h"
-#include "sinew/forces/packed.h"
 #include "sinew/forces/stiffness.h"
 
 namespace sinew {
@@ -32,27 +31,18 @@ double largest_norm(std::span<const Vec3> u) {
 
 }  // namespace
 
-std::optional<PackedStiffness> PackedStiffness::at(const Model& model, const Controls& controls,
-                                                   const std::vector<Vec3>& x,
-                                                   Workspace& workspace) {
-  const bool only_dashpots = std::all_of(model.stiffness.begin(), model.stiffness.end(),
-                                         [](double k) { return k == 0.0; });
-  if (!workspace.packed || !only_dashpots) return std::nullopt;
-  return PackedStiffness(model, controls, x, workspace);
-}
-
 PackedStiffness::PackedStiffness(const Model& model, const Controls& controls,
-                                 const std::vector<Vec3>& x, Workspace& workspace)
+                                 const std::vector<Vec3>& x, PackedForces& packed)
     : model_(model),
       controls_(controls),
       x_(x),
-      workspace_(workspace),
+      packed_(packed),
       longest_way_(way_in_edges * mean_edge(model)),
       base_force_(x.size()) {
   state_.position = x;
   state_.half_velocity.assign(x.size(), Vec3::Zero());
-  workspace_.packed->compute(model_, state_);
-  workspace_.packed->gather(base_force_);
+  packed_.compute(model_, state_);
+  packed_.gather(base_force_);
 }
 
 void PackedStiffness::times(double a, double b, std::span<const Vec3> u, std::span<Vec3> out) {
@@ -68,15 +58,13 @@ void PackedStiffness::times(double a, double b, std::span<const Vec3> u, std::sp
     state_.position[n] = x_[n] + (s * a) * u[n];
     state_.half_velocity[n] = (s * b) * u[n];
   });
-  workspace_.packed->compute_nearby(model_, state_);
-  workspace_.packed->gather(out);
-  prepare_outer_product(model_, x_, b, u, workspace_);
+  packed_.compute_nearby(model_, state_);
+  packed_.gather(out);
+  const OuterProduct outer(model_, x_, a, b, u, Tangent::only_stiffening, viscous_force_);
   parallel_for(model_.node_count(), [&](Index i) {
     const auto n = uz(i);
-    out[n] = model_.inverse_mass[n] == 0.0
-                 ? Vec3::Zero()
-                 : Vec3((base_force_[n] - out[n]) / s +
-                        outer_product(model_, a, b, u[n], i, Tangent::only_stiffening, workspace_));
+    out[n] = model_.inverse_mass[n] == 0.0 ? Vec3::Zero()
+                                           : Vec3((base_force_[n] - out[n]) / s + outer.of(i));
   });
   add_term_products({model_, controls_, x_}, Tangent::only_stiffening, a, u, out);
 }

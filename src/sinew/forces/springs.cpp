@@ -5,22 +5,8 @@
 
 namespace sinew {
 
-Workspace::Workspace(const Model& model)
-    : spring_force(model.springs.size()),
-      force(model.rest_position.size(), Vec3::Zero()),
-      viscous_force(model.viscous_node.size(), Vec3::Zero()) {
-  if (!model.has_volume) return;
-  // Vectors of Vec3 stay as they are until they are used: pages that nothing touches take no
-  // memory.
-  tet_volume.resize(model.tets.size());
-  tet_gradient.resize(model.tets.size());
-  tet_pressure.resize(model.tets.size());
-  tet_force.resize(4 * model.tets.size());
-  cell_pressure.resize(model.cell_volume.size());
-  cell_rate.resize(model.cell_volume.size());
-}
-
-double compute_spring_forces(const Model& model, const State& state, Workspace& workspace) {
+double compute_spring_forces(const Model& model, const State& state, std::vector<Vec3>& force) {
+  force.resize(model.springs.size());
   double power = 0.0;
   for (const Range& active : model.active_springs) {
     power += parallel_reduce(
@@ -37,7 +23,7 @@ double compute_spring_forces(const Model& model, const State& state, Workspace& 
             const SpringPull pull =
                 k == 0.0 ? dashpot_pull(x_ij, v_ij, model.damping[s])
                          : spring_pull(x_ij, v_ij, k, model.rest_length[s], model.damping[s]);
-            workspace.spring_force[s] = pull.force;
+            force[s] = pull.force;
             heat += pull.heat;
           }
           return heat;

@@ -4,14 +4,13 @@
 #include <span>
 #include <vector>
 
-#include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
 
-// Fills workspace.spring_force from positions and half-step velocities.
-// Returns the power [W] that the dashpots turn into heat.
-double compute_spring_forces(const Model& model, const State& state, Workspace& workspace);
+// Sets `force`, that on end 0 of each spring that pulls [N] (springs), from positions and half-step
+// velocities. Returns the power [W] that the dashpots turn into heat.
+double compute_spring_forces(const Model& model, const State& state, std::vector<Vec3>& force);
 
 // Sum over springs of k/2 (|x_ij| - l0)^2 [J].
 double spring_energy(const Model& model, std::span<const Vec3> x);
@@ -25,13 +24,14 @@ struct StretchRange {
 };
 StretchRange measure_stretch(const Model& model, std::span<const Vec3> x);
 
-// Sum, for every node in the fixed order of its springs, of what workspace.spring_force holds.
-inline Vec3 gather_springs(const Model& model, const Workspace& workspace, Index node) {
+// Sum, for a node in the fixed order of its springs, of the forces on the springs' ends 0
+// (springs).
+inline Vec3 gather_springs(const Model& model, const std::vector<Vec3>& force, Index node) {
   Vec3 sum = Vec3::Zero();
   const auto n = uz(node);
   for (Index k = model.spring_start[n]; k < model.spring_start[n + 1]; ++k) {
     const Index s = model.node_spring[uz(k)];
-    const Vec3& f = workspace.spring_force[static_cast<std::size_t>(s >> 1)];
+    const Vec3& f = force[static_cast<std::size_t>(s >> 1)];
     if (s & 1) {
       sum -= f;
     } else {

@@ -10,10 +10,6 @@
 
 namespace sinew {
 
-void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
-  if (model.has_volume) compute_volume_pressures(model, x, workspace);
-}
-
 double most_stiffness(const Model& model, Index node) {
   double sum = 0.0;
   for_each_type(Terms{}, [&](auto term) {
@@ -30,11 +26,24 @@ void add_term_products(const Configuration& at, Tangent tangent, double a, std::
   });
 }
 
-void stiffness_damping_times(const Configuration& at, double a, double b, std::span<const Vec3> u,
-                             Tangent tangent, Workspace& workspace, std::span<Vec3> out) {
+void TangentProduct::times(const Configuration& at, const TetState& tets, double a, double b,
+                           std::span<const Vec3> u, Tangent tangent, std::span<Vec3> out) {
+  std::span<const Vec3> of_tets;
+  if (at.model.has_volume && a != 0.0) of_tets = volume_.compute(at.model, at.x, tets, a, u);
+  sum(at, of_tets, a, b, u, tangent, out);
+}
+
+void TangentProduct::damping_times(const Configuration& at, std::span<const Vec3> u,
+                                   std::span<Vec3> out) {
+  sum(at, {}, 0.0, 1.0, u, Tangent::full, out);
+}
+
+void TangentProduct::sum(const Configuration& at, std::span<const Vec3> of_tets, double a, double b,
+                         std::span<const Vec3> u, Tangent tangent, std::span<Vec3> out) {
   const Model& model = at.model;
   const std::span<const Vec3> x = at.x;
   const bool only_stiffening = tangent == Tangent::only_stiffening;
+  spring_force_.resize(model.springs.size());
   for (const Range& active : model.active_springs) {
     parallel_for(active.size(), [&](Index i) {
       const auto s = uz(active.begin + i);
@@ -42,40 +51,42 @@ void stiffness_damping_times(const Configuration& at, double a, double b, std::s
       const auto n1 = uz(model.springs[s][1]);
       const Vec3 x_ij = x[n1] - x[n0];
       const Vec3 u_ij = u[n1] - u[n0];
-      workspace.spring_force[s] =
-          a * spring_stiffness_times(x_ij, model.stiffness[s], model.rest_length[s], u_ij,
-                                     only_stiffening) +
-          b * dashpot_times(x_ij, model.damping[s], u_ij);
+      spring_force_[s] = a * spring_stiffness_times(x_ij, model.stiffness[s], model.rest_length[s],
+                                                    u_ij, only_stiffening) +
+                         b * dashpot_times(x_ij, model.damping[s], u_ij);
     });
   }
-  const bool volume = model.has_volume && a != 0.0;
   const bool network = !model.network_start.empty() && a != 0.0;
-  if (volume) compute_volume_force_change(model, x, a, u, workspace);
-  prepare_outer_product(model, x, b, u, workspace);
+  const OuterProduct outer(model, x, a, b, u, tangent, viscous_force_);
   parallel_for(model.node_count(), [&](Index i) {
     const auto n = uz(i);
     out[n] = Vec3::Zero();
     if (model.inverse_mass[n] == 0.0) return;
-    out[n] = outer_product(model, a, b, u[n], i, tangent, workspace) -
-             gather_springs(model, workspace, i);
+    out[n] = outer.of(i) - gather_springs(model, spring_force_, i);
     if (network) out[n] -= a * network_pull(model, u, i);
-    if (volume) out[n] -= gather_tets(model, workspace, i);
+    if (!of_tets.empty()) out[n] -= gather_tets(model, of_tets, i);
   });
   if (a != 0.0) add_term_products(at, tangent, a, u, out);
 }
 
-void prepare_outer_product(const Model& model, std::span<const Vec3> x, double b,
-                           std::span<const Vec3> u, Workspace& workspace) {
-  if (!model.tet_viscosity.empty() && b != 0.0) compute_viscous_forces(model, x, u, workspace);
+OuterProduct::OuterProduct(const Model& model, std::span<const Vec3> x, double a, double b,
+                           std::span<const Vec3> u, Tangent tangent,
+                           std::vector<Vec3>& viscous_force)
+    : model_(model),
+      u_(u),
+      viscous_force_(viscous_force),
+      a_(a),
+      b_(b),
+      viscous_(!model.tet_viscosity.empty() && b != 0.0),
+      bounded_(tangent == Tangent::only_stiffening && !model.obstacles.empty()) {
+  if (viscous_) compute_viscous_forces(model, x, u, viscous_force);
 }
 
-Vec3 outer_product(const Model& model, double a, double b, const Vec3& u, Index i, Tangent tangent,
-                   const Workspace& workspace) {
-  Vec3 out = b * model.drag[uz(i)] * model.mass[uz(i)] * u;
-  if (!model.tet_viscosity.empty() && b != 0.0) out -= b * gather_viscous(model, workspace, i);
-  if (tangent == Tangent::only_stiffening && !model.obstacles.empty()) {
-    out += a * most_stiffness(model, i) * u;
-  }
+Vec3 OuterProduct::of(Index node) const {
+  const Vec3& u = u_[uz(node)];
+  Vec3 out = b_ * model_.drag[uz(node)] * model_.mass[uz(node)] * u;
+  if (viscous_) out -= b_ * gather_viscous(model_, viscous_force_, node);
+  if (bounded_) out += a_ * most_stiffness(model_, node) * u;
   return out;
 }
 

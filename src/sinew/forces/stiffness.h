@@ -2,29 +2,52 @@
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "sinew/forces/term.h"
-#include "sinew/forces/workspace.h"
+#include "sinew/forces/volume.h"
 
 namespace sinew {
 
-// Call before the products below whenever x has changed: keeps the pressures at x in the workspace.
-void prepare_stiffness(const Model& model, std::span<const Vec3> x, Workspace& workspace);
+// Products with the tangent. Keeps its arrays from call to call; what it returns depends on the
+// arguments alone.
+class TangentProduct {
+ public:
+  // out = (a K + b C) u: K the second derivative of the energies of springs, network, volume and
+  // all terms, C the dashpots, the viscosity and the drag. `tets` are those at at.x. Nodes whose
+  // motion is given get 0; their u counts. With Tangent::only_stiffening the springs go without the
+  // negative transverse part of those that are compressed.
+  void times(const Configuration& at, const TetState& tets, double a, double b,
+             std::span<const Vec3> u, Tangent tangent, std::span<Vec3> out);
+  // out = C u.
+  void damping_times(const Configuration& at, std::span<const Vec3> u, std::span<Vec3> out);
 
-// out = (a K + b C) u: K the second derivative of the energies of springs, network, volume and all
-// terms, C the dashpots, the viscosity and the drag. Nodes whose motion is given get 0; their u
-// counts. With Tangent::only_stiffening the springs go without the negative transverse part of
-// those that are compressed.
-void stiffness_damping_times(const Configuration& at, double a, double b, std::span<const Vec3> u,
-                             Tangent tangent, Workspace& workspace, std::span<Vec3> out);
+ private:
+  void sum(const Configuration& at, std::span<const Vec3> of_tets, double a, double b,
+           std::span<const Vec3> u, Tangent tangent, std::span<Vec3> out);
 
-// What is in (a K + b C) u of node i besides springs, network, volume and the terms' elements:
-// drag, viscosity and, where only what stiffens counts, the most that bounded terms stiffen it. To
-// be called after prepare_outer_product().
-void prepare_outer_product(const Model& model, std::span<const Vec3> x, double b,
-                           std::span<const Vec3> u, Workspace& workspace);
-Vec3 outer_product(const Model& model, double a, double b, const Vec3& u, Index i, Tangent tangent,
-                   const Workspace& workspace);
+  std::vector<Vec3> spring_force_;   // on end 0 of each spring [N] (springs)
+  std::vector<Vec3> viscous_force_;  // on a node of a viscous cell [N] (slots)
+  VolumeForceChange volume_;
+};
+
+// What is in (a K + b C) u besides springs, network, volume and the terms' elements: drag,
+// viscosity and, where only what stiffens counts, the most that bounded terms stiffen a node.
+class OuterProduct {
+ public:
+  // Everything has to outlive the object; `viscous_force` is scratch (slots).
+  OuterProduct(const Model& model, std::span<const Vec3> x, double a, double b,
+               std::span<const Vec3> u, Tangent tangent, std::vector<Vec3>& viscous_force);
+  Vec3 of(Index node) const;
+
+ private:
+  const Model& model_;
+  std::span<const Vec3> u_;
+  const std::vector<Vec3>& viscous_force_;
+  double a_, b_;
+  bool viscous_;
+  bool bounded_;
+};
 
 // out += a K u of the terms' elements on the free nodes.
 void add_term_products(const Configuration& at, Tangent tangent, double a, std::span<const Vec3> u,

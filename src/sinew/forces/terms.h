@@ -11,7 +11,6 @@
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/term.h"
 #include "sinew/forces/ties.h"
-#include "sinew/forces/workspace.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
@@ -22,15 +21,8 @@ namespace sinew {
 using Terms = TypeList<TieTerm, LoadTerm, ObstacleTerm, GrabTerm>;
 
 // What the loops of a step compute at once: these, with dashpots, viscosity and drag
-// (forces/springs.h, network.h, volume.h, viscosity.h; in single precision forces/packed.h).
+// (forces/force_evaluator.h).
 using FusedTerms = TypeList<SpringTerm, NetworkTerm, VolumeTerm, GravityTerm>;
-
-// Fills workspace.force with the total force on every node [N]: springs, dashpots, network, volume,
-// viscosity, gravity, drag, loads and obstacles at state.time, grabs. Pinned nodes and anchors
-// get only what the material pulls. Returns the power [W] that dashpots, viscosity and drag turn
-// into heat.
-double compute_forces(const Model& model, const Controls& controls, const State& state,
-                      Workspace& workspace);
 
 // Where the state is.
 inline Configuration configuration(const Model& model, const Controls& controls,
@@ -40,17 +32,17 @@ inline Configuration configuration(const Model& model, const Controls& controls,
 
 // The talk's velocity, v(t) = (x(t+h) - x(t-h)) / 2h = w + a h / 2, with w the half-step velocity
 // before t and h the last step; where the motion is given (pins) the half-step velocity itself.
-// Expects compute_forces to have filled workspace.force.
+// `force`: of all terms at the state [N] (nodes).
 std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
-                                       const Workspace& workspace);
+                                       const std::vector<Vec3>& force);
 
 // What springs, network, volume and ties store [J]; 0 at rest.
-double elastic_energy(const Configuration& at, Workspace& workspace);
+double elastic_energy(const Configuration& at);
 
 // What the rest state minimises [J]: elastic energy plus that of gravity, and of the loads and
-// obstacles at state.time and the grabs, 0 at the rest positions.
-double potential_energy(const Model& model, const Controls& controls, const State& state,
-                        Workspace& workspace);
+// obstacles at at.time and the grabs, 0 at the rest positions. tet_volume: at at.x [m3] (tets),
+// volumes_of_tets().
+double potential_energy(const Configuration& at, std::span<const double> tet_volume);
 
 // Gravity, the loads and obstacles at state.time, and the grabs on the free nodes [N], 0 on the
 // others.
@@ -67,8 +59,9 @@ struct Energies {
   // work_in is constant up to the step's error.
   double total() const { return kinetic + elastic + gravity + contact + dissipated - work_in; }
 };
+// `force`: of all terms at the state [N] (nodes).
 Energies measure_energies(const Model& model, const Controls& controls, const State& state,
-                          Workspace& workspace);
+                          const std::vector<Vec3>& force);
 
 // Current volume of the body's tets over their rest volume [-].
 double volume_ratio(const Model& model, const Body& body, const std::vector<Vec3>& x);

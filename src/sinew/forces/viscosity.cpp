@@ -124,12 +124,13 @@ inline ViscousStress stress_of_cell(const Model& model, std::span<const Vec3> x,
 }  // namespace
 
 double compute_viscous_forces(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v,
-                              Workspace& workspace) {
+                              std::vector<Vec3>& force) {
+  force.resize(model.viscous_node.size());
   return parallel_sum(model.viscous_cell_count(), [&](Index i) {
     const auto cell = uz(i);
     const ViscousStress viscous = stress_of_cell(model, x, v, cell);
     for (auto s = uz(model.viscous_cell[cell]); s < uz(model.viscous_cell[cell + 1]); ++s) {
-      workspace.viscous_force[s] = -(viscous.stress * model.viscous_gradient[s]);
+      force[s] = -(viscous.stress * model.viscous_gradient[s]);
     }
     return viscous.heat;
   });

@@ -10,7 +10,6 @@
 #include <span>
 #include <vector>
 
-#include "sinew/forces/workspace.h"
 #include "sinew/mesh/tet_mesh.h"
 #include "sinew/model/model.h"
 
@@ -58,10 +57,10 @@ void add_viscosity(Model& model, const TetMesh& mesh, const std::vector<Material
 // Derives the list node -> cells; called once, by finish().
 void finish_viscosity(Model& model);
 
-// Fills workspace.viscous_force with what the viscosity pulls the nodes of each cell with at
-// positions x and velocities v. Returns the power [W] that it turns into heat.
+// Sets `force`, what the viscosity pulls each node of each cell with [N] (slots), from positions x
+// and velocities v. Returns the power [W] that it turns into heat.
 double compute_viscous_forces(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v,
-                              Workspace& workspace);
+                              std::vector<Vec3>& force);
 
 // That power alone, v . C v [W].
 double viscous_power(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v);
@@ -72,13 +71,13 @@ Mat3 viscous_deformation(const Model& model, std::span<const Vec3> x, Index cell
 // For every node an upper bound of the sum of |C_ij| over its row [N s/m] (nodes).
 std::vector<double> viscous_row_sums(const Model& model, std::span<const Vec3> x);
 
-// Sum, for a node in the fixed order of its cells, of what workspace.viscous_force holds. For
+// Sum, for a node in the fixed order of its cells, of the forces on the cells' nodes (slots). For
 // models with viscosity only.
-inline Vec3 gather_viscous(const Model& model, const Workspace& workspace, Index node) {
+inline Vec3 gather_viscous(const Model& model, const std::vector<Vec3>& force, Index node) {
   Vec3 sum = Vec3::Zero();
   const auto n = uz(node);
   for (Index k = model.viscous_start[n]; k < model.viscous_start[n + 1]; ++k) {
-    sum += workspace.viscous_force[uz(model.viscous_slot[uz(k)])];
+    sum += force[uz(model.viscous_slot[uz(k)])];
   }
   return sum;
 }

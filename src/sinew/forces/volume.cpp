@@ -6,7 +6,6 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/network.h"
-#include "sinew/forces/packed.h"
 #include "sinew/forces/volume_law.h"
 
 namespace sinew {
@@ -21,16 +20,17 @@ double corner_volume(std::span<const Vec3> x, const Tet& t) {
   return signed_volume(x[uz(t[0])], x[uz(t[1])], x[uz(t[2])], x[uz(t[3])]);
 }
 
-// kappa_c (J_c - 1) of every cell, from workspace.tet_volume.
-void compute_cell_pressures(const Model& model, Workspace& workspace) {
-  parallel_for(model.cell_count(), [&](Index i) {
-    const auto c = uz(i);
-    double volume = 0.0;
-    for (Index k = model.cell_start[c]; k < model.cell_start[c + 1]; ++k) {
-      volume += model.cell_weight[uz(k)] * workspace.tet_volume[uz(model.cell_tet[uz(k)])];
-    }
-    workspace.cell_pressure[c] = model.cell_bulk[c] * (volume / model.cell_volume[c] - 1.0);
-  });
+inline double sum_over_cell(const Model& model, std::size_t c, std::span<const double> of_tet) {
+  double sum = 0.0;
+  for (Index k = model.cell_start[c]; k < model.cell_start[c + 1]; ++k) {
+    sum += model.cell_weight[uz(k)] * of_tet[uz(model.cell_tet[uz(k)])];
+  }
+  return sum;
+}
+
+// kappa_c (J_c - 1) for these volumes of the tets.
+inline double pressure_of_cell(const Model& model, std::size_t c, std::span<const double> volume) {
+  return model.cell_bulk[c] * (sum_over_cell(model, c, volume) / model.cell_volume[c] - 1.0);
 }
 
 double mean_of_cells(const Model& model, std::size_t t, std::span<const double> of_cell) {
@@ -42,54 +42,67 @@ double mean_of_cells(const Model& model, std::size_t t, std::span<const double> 
   return sum;
 }
 
-// workspace.tet_volume and tet_gradient at x: v = e3 . (e1 x e2) / 6 is e3 . dv/dx_3.
-void compute_geometry_of(const Model& model, std::span<const Vec3> x, std::size_t t,
-                         Workspace& workspace) {
+// A tet at x: v = e3 . (e1 x e2) / 6 is e3 . dv/dx_3.
+struct TetGeometry {
+  double volume = 0.0;
+  Corners gradient;
+};
+TetGeometry geometry_of(const Model& model, std::span<const Vec3> x, std::size_t t) {
   const Tet& tet = model.tets[t];
   const Vec3& x0 = x[uz(tet[0])];
   const Vec3 e3 = x[uz(tet[3])] - x0;
   const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, e3);
-  workspace.tet_volume[t] = e3.dot(g[3]);
-  workspace.tet_gradient[t] = g;
+  return {e3.dot(g[3]), g};
 }
 
-void compute_tet_geometry(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
-  parallel_for(model.tet_count(),
-               [&](Index t) { compute_geometry_of(model, x, uz(t), workspace); });
-}
-
-// As compute_tet_geometry() to the bit, without the gradients.
-void compute_tet_volumes(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+// Leaves the arrays empty where the model has no volume terms.
+void fill_tet_volumes(const Model& model, std::span<const Vec3> x, TetVolumes& tets) {
+  if (!model.has_volume) return;
+  tets.volume.resize(model.tets.size());
+  tets.gradient.resize(model.tets.size());
   parallel_for(model.tet_count(), [&](Index t) {
-    const Tet& tet = model.tets[uz(t)];
-    const Vec3& x0 = x[uz(tet[0])];
-    const Vec3 g3 = (x[uz(tet[1])] - x0).cross(x[uz(tet[2])] - x0) / 6.0;
-    workspace.tet_volume[uz(t)] = (x[uz(tet[3])] - x0).dot(g3);
+    const TetGeometry tet = geometry_of(model, x, uz(t));
+    tets.volume[uz(t)] = tet.volume;
+    tets.gradient[uz(t)] = tet.gradient;
   });
 }
 
-// Cells' and tets' pressures from workspace.tet_volume.
-void compute_pressures_of_volumes(const Model& model, Workspace& workspace) {
-  compute_cell_pressures(model, workspace);
+// kappa_c (J_c - 1) of every cell.
+void fill_cell_pressures(const Model& model, std::span<const double> volume,
+                         std::vector<double>& pressure) {
+  pressure.resize(model.cell_volume.size());
+  parallel_for(model.cell_count(),
+               [&](Index c) { pressure[uz(c)] = pressure_of_cell(model, uz(c), volume); });
+}
+
+// s_t of every tet.
+void fill_tet_pressures(const Model& model, std::span<const double> volume,
+                        std::span<const double> cell_pressure, std::vector<double>& pressure) {
+  pressure.resize(model.tets.size());
   parallel_for(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
-    const double ratio = workspace.tet_volume[t] / model.rest_volume[t];
-    workspace.tet_pressure[t] = -model.tet_shear[t] + model.tet_bulk[t] * (ratio - 1.0) +
-                                mean_of_cells(model, t, workspace.cell_pressure) +
-                                guard_pressure(ratio, guard_modulus(model, t));
+    const double ratio = volume[t] / model.rest_volume[t];
+    pressure[t] = -model.tet_shear[t] + model.tet_bulk[t] * (ratio - 1.0) +
+                  mean_of_cells(model, t, cell_pressure) +
+                  guard_pressure(ratio, guard_modulus(model, t));
   });
 }
 
-// workspace.tet_rate: what u changes every tet's volume by, to first order.
-void compute_tet_rates(const Model& model, std::span<const Vec3> u, Workspace& workspace) {
-  workspace.tet_rate.resize(model.tets.size());
+// What u changes every tet's volume by, to first order.
+void fill_tet_rates(const Model& model, const TetVolumes& tets, std::span<const Vec3> u,
+                    std::vector<double>& rates) {
+  rates.resize(model.tets.size());
   parallel_for(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
     double rate = 0.0;
-    for (std::size_t c = 0; c < 4; ++c)
-      rate += workspace.tet_gradient[t][c].dot(u[uz(model.tets[t][c])]);
-    workspace.tet_rate[t] = rate;
+    for (std::size_t c = 0; c < 4; ++c) rate += tets.gradient[t][c].dot(u[uz(model.tets[t][c])]);
+    rates[t] = rate;
   });
+}
+
+// Whether this volume makes the tet a LowTet; also where it is no number.
+bool is_low(const Model& model, std::size_t t, double volume) {
+  return !(volume >= low_ratio * model.rest_volume[t]);
 }
 
 // Gives every node cell its share of its tets: in proportion to the cell's volume when each tet is
@@ -195,45 +208,93 @@ void finish_volume_terms(Model& model) {
        [](std::size_t t, std::size_t a) { return static_cast<Index>(4 * t + a); });
 }
 
-void compute_tet_geometry(const Model& model, std::span<const Vec3> x, std::span<const Index> tets,
-                          Workspace& workspace) {
-  for (const Index t : tets) compute_geometry_of(model, x, uz(t), workspace);
+TetVolumes compute_tet_volumes(const Model& model, std::span<const Vec3> x, TetVolumes reuse) {
+  fill_tet_volumes(model, x, reuse);
+  return reuse;
 }
 
-void compute_volume_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
-  workspace.has_tets = true;
-  compute_tet_geometry(model, x, workspace);
-  compute_pressures_of_volumes(model, workspace);
+TetState compute_tet_state(const Model& model, std::span<const Vec3> x, TetState reuse) {
+  if (!model.has_volume) return reuse;
+  fill_tet_volumes(model, x, reuse);
+  fill_cell_pressures(model, reuse.volume, reuse.cell_pressure);
+  fill_tet_pressures(model, reuse.volume, reuse.cell_pressure, reuse.pressure);
+  return reuse;
 }
 
-void compute_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
-  compute_tet_volumes(model, x, workspace);
-  compute_pressures_of_volumes(model, workspace);
+std::vector<double> volumes_of_tets(const Model& model, std::span<const Vec3> x,
+                                    std::vector<double> reuse) {
+  if (!model.has_volume) return reuse;
+  reuse.resize(model.tets.size());
+  parallel_for(model.tet_count(), [&](Index t) {
+    const Tet& tet = model.tets[uz(t)];
+    const Vec3& x0 = x[uz(tet[0])];
+    const Vec3 g3 = (x[uz(tet[1])] - x0).cross(x[uz(tet[2])] - x0) / 6.0;
+    reuse[uz(t)] = (x[uz(tet[3])] - x0).dot(g3);
+  });
+  return reuse;
 }
 
-std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x,
-                                     const Workspace& workspace) {
+std::vector<double> pressures_of_tets(const Model& model, std::span<const Vec3> x) {
   if (!model.has_volume) return {};
-  std::vector<double> pressure(model.tets.size());
+  const std::vector<double> volume = volumes_of_tets(model, x);
+  std::vector<double> of_cells, of_tets;
+  fill_cell_pressures(model, volume, of_cells);
+  fill_tet_pressures(model, volume, of_cells, of_tets);
+  return of_tets;
+}
+
+LowTet low_tet_at(const Model& model, std::span<const Vec3> x, Index tet) {
+  const TetGeometry at = geometry_of(model, x, uz(tet));
+  return {tet, at.volume, at.gradient};
+}
+
+void find_low_tets(const Model& model, const TetVolumes& tets, std::vector<LowTet>& low) {
+  low.clear();
+  const int any = parallel_reduce(
+      static_cast<Index>(tets.volume.size()), 0,
+      [&](Range r) {
+        int found = 0;
+        for (auto t = uz(r.begin); t < uz(r.end); ++t) found |= is_low(model, t, tets.volume[t]);
+        return found;
+      },
+      [](int a, int b) { return a | b; });
+  if (any == 0) return;
+  for (std::size_t t = 0; t < tets.volume.size(); ++t) {
+    if (is_low(model, t, tets.volume[t]))
+      low.push_back({static_cast<Index>(t), tets.volume[t], tets.gradient[t]});
+  }
+}
+
+std::vector<LowTet> find_low_tets(const Model& model, std::span<const Vec3> x) {
+  std::vector<LowTet> low;
+  const std::vector<double> volume = volumes_of_tets(model, x);
+  for (std::size_t t = 0; t < volume.size(); ++t) {
+    if (is_low(model, t, volume[t])) low.push_back(low_tet_at(model, x, static_cast<Index>(t)));
+  }
+  return low;
+}
+
+std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x) {
+  if (!model.has_volume) return {};
+  const std::vector<double> volume = volumes_of_tets(model, x);
+  std::vector<double> pressure = pressures_of_tets(model, x);
   parallel_for(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
     const auto g = shape_gradients(model.rest_position, model.tets[t]);
     Mat3 F = Mat3::Zero();
     for (std::size_t a = 0; a < 4; ++a) F += x[uz(model.tets[t][a])] * g[a].transpose();
     pressure[t] = -(model.tet_shear[t] / 3.0 * F.squaredNorm() +
-                    workspace.tet_pressure[t] * workspace.tet_volume[t] / model.rest_volume[t]);
+                    pressure[t] * volume[t] / model.rest_volume[t]);
   });
   return pressure;
 }
 
-double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace) {
+double volume_energy(const Model& model, std::span<const double> volume) {
   if (!model.has_volume) return 0.0;
-  compute_tet_volumes(model, x, workspace);
-  compute_cell_pressures(model, workspace);
   const double of_tets = parallel_sum(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
     const double rest = model.rest_volume[t];
-    const double ratio = workspace.tet_volume[t] / rest;
+    const double ratio = volume[t] / rest;
     double w = -model.tet_shear[t] * (ratio - 1.0) +
                0.5 * model.tet_bulk[t] * (ratio - 1.0) * (ratio - 1.0);
     if (ratio < guard_threshold) w += guard_energy(ratio, guard_modulus(model, t));
@@ -242,108 +303,81 @@ double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& wor
   const double of_cells = parallel_sum(model.cell_count(), [&](Index i) {
     const auto c = uz(i);
     if (model.cell_bulk[c] == 0.0) return 0.0;
-    const double p = workspace.cell_pressure[c];
+    const double p = pressure_of_cell(model, c, volume);
     return 0.5 * model.cell_volume[c] * p * p / model.cell_bulk[c];
   });
   return of_tets + of_cells;
 }
 
-double tet_volume_stiffness(const Model& model, const Workspace& workspace, std::size_t tet) {
-  const double ratio = workspace.tet_volume[tet] / model.rest_volume[tet];
+double tet_volume_stiffness(const Model& model, std::size_t tet, double volume) {
+  const double ratio = volume / model.rest_volume[tet];
   return model.tet_bulk[tet] + guard_stiffness(ratio, guard_modulus(model, tet));
 }
 
-void compute_volume_force_change(const Model& model, std::span<const Vec3> x, double a,
-                                 std::span<const Vec3> u, Workspace& workspace) {
-  // First the rate of every volume, then that of the pressures, then that of the forces.
-  compute_tet_rates(model, u, workspace);
+// First the rate of every volume, then that of the pressures, then that of the forces.
+std::span<const Vec3> VolumeForceChange::compute(const Model& model, std::span<const Vec3> x,
+                                                 const TetState& tets, double a,
+                                                 std::span<const Vec3> u) {
+  fill_tet_rates(model, tets, u, tet_rate_);
+  cell_rate_.resize(model.cell_volume.size());
   parallel_for(model.cell_count(), [&](Index i) {
     const auto c = uz(i);
-    double rate = 0.0;
-    for (Index k = model.cell_start[c]; k < model.cell_start[c + 1]; ++k) {
-      rate += model.cell_weight[uz(k)] * workspace.tet_rate[uz(model.cell_tet[uz(k)])];
-    }
-    workspace.cell_rate[c] = model.cell_bulk[c] * rate / model.cell_volume[c];
+    cell_rate_[c] = model.cell_bulk[c] * sum_over_cell(model, c, tet_rate_) / model.cell_volume[c];
   });
+  force_.resize(4 * model.tets.size());
   parallel_for(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
     const Tet& tet = model.tets[t];
     const double rest = model.rest_volume[t];
-    const double rate = tet_volume_stiffness(model, workspace, t) * workspace.tet_rate[t] / rest +
-                        mean_of_cells(model, t, workspace.cell_rate);
-    const double pressure = workspace.tet_pressure[t];
+    const double rate = tet_volume_stiffness(model, t, tets.volume[t]) * tet_rate_[t] / rest +
+                        mean_of_cells(model, t, cell_rate_);
+    const double pressure = tets.pressure[t];
     const Vec3& x0 = x[uz(tet[0])];
     const Vec3& u0 = u[uz(tet[0])];
     const std::array<Vec3, 3> e = {x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0};
     const std::array<Vec3, 3> d = {u[uz(tet[1])] - u0, u[uz(tet[2])] - u0, u[uz(tet[3])] - u0};
-    const Corners& g = workspace.tet_gradient[t];
+    const Corners& g = tets.gradient[t];
     const Corners dg = volume_gradient_change(e[0], e[1], e[2], d[0], d[1], d[2]);
     for (std::size_t c = 0; c < 4; ++c) {
-      workspace.tet_force[4 * t + c] = -a * (rate * g[c] + pressure * dg[c]);
+      force_[4 * t + c] = -a * (rate * g[c] + pressure * dg[c]);
     }
   });
+  return force_;
 }
 
-namespace {
-
-// Sum over the cell's tets of its share of what `of_tet` holds.
-double sum_of_cell(const Model& model, std::size_t c, const std::vector<double>& of_tet) {
-  double sum = 0.0;
-  for (Index k = model.cell_start[c]; k < model.cell_start[c + 1]; ++k) {
-    sum += model.cell_weight[uz(k)] * of_tet[uz(model.cell_tet[uz(k)])];
-  }
-  return sum;
+double sum_of_cell(const Model& model, std::size_t cell, std::span<const double> of_tet) {
+  return sum_over_cell(model, cell, of_tet);
 }
 
-}  // namespace
-
-void sum_cells(const Model& model, std::span<const Vec3> x, Workspace& workspace,
-               std::span<double> volume) {
-  compute_tet_geometry(model, x, workspace);
+void rate_cells(const Model& model, const TetVolumes& tets, std::span<const Vec3> u,
+                std::vector<double>& tet_rate, std::span<double> rate) {
+  fill_tet_rates(model, tets, u, tet_rate);
   parallel_for(model.cell_count(),
-               [&](Index c) { volume[uz(c)] = sum_of_cell(model, uz(c), workspace.tet_volume); });
+               [&](Index c) { rate[uz(c)] = sum_over_cell(model, uz(c), tet_rate); });
 }
 
-void rate_cells(const Model& model, std::span<const Vec3> u, Workspace& workspace,
-                std::span<double> rate) {
-  compute_tet_rates(model, u, workspace);
-  parallel_for(model.cell_count(),
-               [&](Index c) { rate[uz(c)] = sum_of_cell(model, uz(c), workspace.tet_rate); });
+void press_cells(const Model& model, std::span<const double> weight,
+                 std::vector<double>& pressure) {
+  pressure.resize(model.tets.size());
+  parallel_for(model.tet_count(),
+               [&](Index t) { pressure[uz(t)] = mean_of_cells(model, uz(t), weight); });
 }
 
-void press_cells(const Model& model, std::span<const double> weight, Workspace& workspace) {
-  workspace.tet_pressure_change.resize(model.tets.size());
-  parallel_for(model.tet_count(), [&](Index t) {
-    workspace.tet_pressure_change[uz(t)] = mean_of_cells(model, uz(t), weight);
-  });
-}
-
-double guard_frequency2(const Model& model, const Workspace& workspace) {
-  const auto of_tet = [&](std::size_t t) {
+double guard_frequency2(const Model& model, std::span<const LowTet> low) {
+  double largest = 0.0;
+  for (const LowTet& tet : low) {
+    const auto t = uz(tet.tet);
     const double rest = model.rest_volume[t];
-    const double ratio = workspace.tet_volume[t] / rest;
+    const double ratio = tet.volume / rest;
     const double stiffness = guard_stiffness(ratio - guard_margin, guard_modulus(model, t));
-    if (stiffness == 0.0) return 0.0;
-    const Tet& tet = model.tets[t];
+    if (stiffness == 0.0) continue;
     double sum = 0.0;
     for (std::size_t a = 0; a < 4; ++a) {
-      sum += model.inverse_mass[uz(tet[a])] * workspace.tet_gradient[t][a].squaredNorm();
+      sum += model.inverse_mass[uz(model.tets[t][a])] * tet.gradient[a].squaredNorm();
     }
-    return stiffness / rest * sum;
-  };
-  if (!workspace.has_tets) {
-    double largest = 0.0;
-    for (const Index t : workspace.packed->low_tets()) largest = std::max(largest, of_tet(uz(t)));
-    return largest;
+    largest = std::max(largest, stiffness / rest * sum);
   }
-  return parallel_reduce(
-      model.tet_count(), 0.0,
-      [&](Range r) {
-        double largest = 0.0;
-        for (Index t = r.begin; t < r.end; ++t) largest = std::max(largest, of_tet(uz(t)));
-        return largest;
-      },
-      [](double a, double b) { return std::max(a, b); });
+  return largest;
 }
 
 double largest_cell_change(const Model& model, std::span<const Vec3> x) {

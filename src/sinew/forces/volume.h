@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "sinew/forces/workspace.h"
+#include "sinew/forces/volume_law.h"
 #include "sinew/mesh/tet_mesh.h"
 #include "sinew/model/model.h"
 
@@ -28,82 +28,109 @@ std::vector<double> quarter_volumes_of_cells(const Model& model, Range tets);
 // Derives the lists cell -> tets and node -> tets; called once, by finish().
 void finish_volume_terms(Model& model);
 
+// Volume and its gradient of every tet at some positions; empty where the model has no volume
+// terms.
+struct TetVolumes {
+  std::vector<double> volume;     // v_t [m3] (tets)
+  std::vector<Corners> gradient;  // dv_t/dx of the corners [m2] (tets)
+};
+
+// The same with the pressures: all that the forces of the volume terms and their tangent take.
+struct TetState : TetVolumes {
+  std::vector<double> pressure;       // s_t [Pa] (tets)
+  std::vector<double> cell_pressure;  // kappa_c (J_c - 1) [Pa] (cells)
+};
+
+// These are functions of x alone. The arrays of `reuse` become those of the result, so that a
+// caller that gives back the last result allocates nothing.
+TetVolumes compute_tet_volumes(const Model& model, std::span<const Vec3> x, TetVolumes reuse = {});
+TetState compute_tet_state(const Model& model, std::span<const Vec3> x, TetState reuse = {});
+// Only v_t [m3] (tets), to the same bits.
+std::vector<double> volumes_of_tets(const Model& model, std::span<const Vec3> x,
+                                    std::vector<double> reuse = {});
+// Only s_t [Pa] (tets).
+std::vector<double> pressures_of_tets(const Model& model, std::span<const Vec3> x);
+
+// A tet that has lost half of its volume or more: one that the guard pushes or may push within a
+// step, or that is inside out.
+struct LowTet {
+  Index tet = -1;
+  double volume = 0.0;  // [m3]
+  Corners gradient;     // [m2]
+};
+LowTet low_tet_at(const Model& model, std::span<const Vec3> x, Index tet);
+// All of them, by id: those of `tets`, to `low`, or those at positions x.
+void find_low_tets(const Model& model, const TetVolumes& tets, std::vector<LowTet>& low);
+std::vector<LowTet> find_low_tets(const Model& model, std::span<const Vec3> x);
+
 // sum_t p_t dv_t/dx_i over the node's tets in their fixed order, p (tets).
-inline Vec3 press_tets(const Model& model, const Workspace& workspace, std::span<const double> p,
-                       Index node) {
+inline Vec3 press_tets(const Model& model, std::span<const Corners> gradient,
+                       std::span<const double> p, Index node) {
   Vec3 sum = Vec3::Zero();
   const auto n = uz(node);
   for (Index k = model.tet_start[n]; k < model.tet_start[n + 1]; ++k) {
     const auto corner = uz(model.node_tet[uz(k)]);
-    sum += p[corner / 4] * workspace.tet_gradient[corner / 4][corner % 4];
+    sum += p[corner / 4] * gradient[corner / 4][corner % 4];
   }
   return sum;
 }
 
-// Fills workspace.tet_volume, tet_gradient and tet_pressure (s_t) at positions x: all that the
-// forces are made of (push_of_tets), and that the products below expect.
-void compute_volume_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace);
-
-// Only tet_volume and tet_pressure: what energies and measures need.
-void compute_pressures(const Model& model, std::span<const Vec3> x, Workspace& workspace);
-
-// Only tet_volume and tet_gradient, and of these tets alone.
-void compute_tet_geometry(const Model& model, std::span<const Vec3> x, std::span<const Index> tets,
-                          Workspace& workspace);
-
 // -sum_t s_t dv_t/dx_i over the node's tets in their fixed order: the force on it [N].
-inline Vec3 push_of_tets(const Model& model, const Workspace& workspace, Index node) {
-  return -press_tets(model, workspace, workspace.tet_pressure, node);
+inline Vec3 push_of_tets(const Model& model, const TetState& tets, Index node) {
+  return -press_tets(model, tets.gradient, tets.pressure, node);
 }
 
 // Pressure of every tet [Pa] (tets), > 0 where it is squeezed: minus the mean Kirchhoff stress,
 //   p = -(mu |F|^2 / 3 + s v/V),   F the tet's deformation gradient,
 // which at small strains is -K (v/V - 1) with the bulk modulus K. Of classic springs only what
-// their volume energy does; empty where the model has no volume terms. Expects what
-// compute_pressures leaves at x.
-std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x,
-                                     const Workspace& workspace);
+// their volume energy does; empty where the model has no volume terms.
+std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x);
 
-// W [J]: zero at rest.
-double volume_energy(const Model& model, std::span<const Vec3> x, Workspace& workspace);
+// W [J] of tets with these volumes [m3] (tets): zero at rest.
+double volume_energy(const Model& model, std::span<const double> volume);
 
-// Fills workspace.tet_force with what a displacement u changes the corner forces by, to first
-// order and with the sign of a force: -a H u. Expects what compute_volume_pressures leaves at x.
-void compute_volume_force_change(const Model& model, std::span<const Vec3> x, double a,
-                                 std::span<const Vec3> u, Workspace& workspace);
+// What a displacement u changes the corner forces by, to first order and with the sign of a force:
+// -a H u [N] (4 a tet). Keeps its arrays from call to call.
+class VolumeForceChange {
+ public:
+  std::span<const Vec3> compute(const Model& model, std::span<const Vec3> x, const TetState& tets,
+                                double a, std::span<const Vec3> u);
 
-// --- the pieces of a projection on the cells' volumes (volume_limit.h) ---
+ private:
+  std::vector<double> tet_rate_;   // change of v_t [m3] (tets)
+  std::vector<double> cell_rate_;  // change of the pressure [Pa] (cells)
+  std::vector<Vec3> force_;
+};
 
-// volume = current volume of every cell [m3] (cells). Leaves workspace.tet_gradient for the others.
-void sum_cells(const Model& model, std::span<const Vec3> x, Workspace& workspace,
-               std::span<double> volume);
-// rate = what u changes those volumes by, to first order [m3] (cells).
-void rate_cells(const Model& model, std::span<const Vec3> u, Workspace& workspace,
-                std::span<double> rate);
-// Fills workspace.tet_pressure_change so that press_tets gives the gradient of
-// sum_c weight_c V_c(x).
-void press_cells(const Model& model, std::span<const double> weight, Workspace& workspace);
-
-// V d2W/dv2 of a tet's own energies, its volume's and the guard's [Pa]. Expects
-// workspace.tet_volume.
-double tet_volume_stiffness(const Model& model, const Workspace& workspace, std::size_t tet);
-
-// Sum, for a node in the fixed order of its tets, of what workspace.tet_force holds.
-inline Vec3 gather_tets(const Model& model, const Workspace& workspace, Index node) {
+// Sum, for a node in the fixed order of its tets, of forces on the corners (4 a tet).
+inline Vec3 gather_tets(const Model& model, std::span<const Vec3> corner_force, Index node) {
   Vec3 sum = Vec3::Zero();
   const auto n = uz(node);
   for (Index k = model.tet_start[n]; k < model.tet_start[n + 1]; ++k) {
-    sum += workspace.tet_force[uz(model.node_tet[uz(k)])];
+    sum += corner_force[uz(model.node_tet[uz(k)])];
   }
   return sum;
 }
 
+// --- the pieces of a projection on the cells' volumes (volume_limit.h) ---
+
+// Sum over the cell's tets of its share of a value of each (tets): its volume, for theirs.
+double sum_of_cell(const Model& model, std::size_t cell, std::span<const double> of_tet);
+// What u changes the cells' volumes by, to first order [m3] (cells). tet_rate: the same of the
+// tets.
+void rate_cells(const Model& model, const TetVolumes& tets, std::span<const Vec3> u,
+                std::vector<double>& tet_rate, std::span<double> rate);
+// The pressures [tets] with which press_tets() gives the gradient of sum_c weight_c V_c(x).
+void press_cells(const Model& model, std::span<const double> weight, std::vector<double>& pressure);
+
+// V d2W/dv2 of a tet's own energies, its volume's and the guard's [Pa], at this volume [m3].
+double tet_volume_stiffness(const Model& model, std::size_t tet, double volume);
+
 // Square of the highest angular frequency [1/s2] that the guard adds: the largest g/V sum_a
 // |dv/dx_a|^2 / m_a over the tets that it acts on, or that are about to come under it (0 where
-// there is none). Expects workspace.tet_volume and tet_gradient of the step before: the guard sets
-// in too fast for the explicit stepper to wait until the stable step is looked at. With packed
-// forces: over the tets that they found low.
-double guard_frequency2(const Model& model, const Workspace& workspace);
+// there is none). The guard sets in too fast for the explicit stepper to wait until the stable step
+// is looked at.
+double guard_frequency2(const Model& model, std::span<const LowTet> low);
 
 // Largest |J_c - 1| over the node cells [-]; 0 where there are none.
 double largest_cell_change(const Model& model, std::span<const Vec3> x);

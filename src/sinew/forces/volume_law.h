@@ -43,6 +43,8 @@ inline Corners volume_gradient_change(const Vec3& e1, const Vec3& e2, const Vec3
 inline constexpr double guard_threshold = 0.4;
 inline constexpr double guard_factor = 40.0;
 inline constexpr double guard_margin = 0.1;  // what v/V may lose within a step
+// Below this v/V the guard acts or may act within a step.
+inline constexpr double low_ratio = guard_threshold + guard_margin;
 
 // Its part of the tet's pressure, dW/dv [Pa] <= 0. ratio = v / V [-], mu [Pa].
 inline double guard_pressure(double ratio, double mu) {

@@ -21,9 +21,9 @@ struct Violation {
   double change = 0.0;  // largest |J_c - 1|
   bool met = true;
 };
-Violation measure(const Model& model, const std::vector<Vec3>& x, Workspace& workspace,
-                  CellField& c) {
-  sum_cells(model, x, workspace, c);
+Violation measure(const Model& model, const TetVolumes& tets, CellField& c) {
+  parallel_for(model.cell_count(),
+               [&](Index i) { c[uz(i)] = sum_of_cell(model, uz(i), tets.volume); });
   Violation v;
   for (std::size_t i = 0; i < c.size(); ++i) {
     if (model.volume_limit[i] == no_limit) {
@@ -38,26 +38,26 @@ Violation measure(const Model& model, const std::vector<Vec3>& x, Workspace& wor
   return v;
 }
 
-// u = W G^T lambda on the nodes.
-void spread(const Model& model, const CellField& lambda, Workspace& workspace,
-            std::vector<Vec3>& u) {
-  press_cells(model, lambda, workspace);
+// u = W G^T lambda on the nodes; of_tets is scratch (tets), here and below.
+void spread(const Model& model, const TetVolumes& tets, const CellField& lambda,
+            std::vector<double>& of_tets, std::vector<Vec3>& u) {
+  press_cells(model, lambda, of_tets);
   parallel_for(model.node_count(), [&](Index i) {
-    u[uz(i)] =
-        model.inverse_mass[uz(i)] * press_tets(model, workspace, workspace.tet_pressure_change, i);
+    u[uz(i)] = model.inverse_mass[uz(i)] * press_tets(model, tets.gradient, of_tets, i);
   });
 }
 
 // y = G u of the limited cells.
-void rates(const Model& model, const std::vector<Vec3>& u, Workspace& workspace, CellField& y) {
-  rate_cells(model, u, workspace, y);
+void rates(const Model& model, const TetVolumes& tets, const std::vector<Vec3>& u,
+           std::vector<double>& of_tets, CellField& y) {
+  rate_cells(model, tets, u, of_tets, y);
   for (std::size_t i = 0; i < y.size(); ++i) {
     if (model.volume_limit[i] == no_limit) y[i] = 0.0;
   }
 }
 
 // An estimate of the diagonal of G W G^T: sum_t w^2 sum_a |dv/dx_a|^2 / m_a over the cell's tets.
-CellField measure_diagonal(const Model& model, const Workspace& workspace) {
+CellField measure_diagonal(const Model& model, const TetVolumes& tets) {
   CellField diagonal(model.cell_volume.size());
   parallel_for(model.cell_count(), [&](Index i) {
     const auto c = uz(i);
@@ -66,8 +66,7 @@ CellField measure_diagonal(const Model& model, const Workspace& workspace) {
       const auto t = uz(model.cell_tet[k]);
       double of_tet = 0.0;
       for (std::size_t a = 0; a < 4; ++a) {
-        of_tet +=
-            model.inverse_mass[uz(model.tets[t][a])] * workspace.tet_gradient[t][a].squaredNorm();
+        of_tet += model.inverse_mass[uz(model.tets[t][a])] * tets.gradient[t][a].squaredNorm();
       }
       sum += model.cell_weight[k] * model.cell_weight[k] * of_tet;
     }
@@ -86,16 +85,17 @@ bool is_small(const Model& model, const CellField& r) {
 
 }  // namespace
 
-VolumeLimitReport enforce_volume_limit(const Model& model, std::vector<Vec3>& x,
-                                       Workspace& workspace, int most) {
+VolumeLimitReport enforce_volume_limit(const Model& model, std::vector<Vec3>& x, int most) {
   VolumeLimitReport report;
   const std::size_t cells = model.cell_volume.size();
   CellField c(cells), lambda(cells), r(cells), z(cells), p(cells), q(cells);
   std::vector<Vec3> u(x.size());
-  Violation v = measure(model, x, workspace, c);
+  std::vector<double> of_tets;
+  TetVolumes tets = compute_tet_volumes(model, x);
+  Violation v = measure(model, tets, c);
   while (!v.met && report.projections < most) {
     ++report.projections;
-    const CellField diagonal = measure_diagonal(model, workspace);
+    const CellField diagonal = measure_diagonal(model, tets);
     const auto scale = [&] {
       for (std::size_t i = 0; i < cells; ++i) z[i] = r[i] / diagonal[i];
     };
@@ -105,8 +105,8 @@ VolumeLimitReport enforce_volume_limit(const Model& model, std::vector<Vec3>& x,
     p = z;
     double rz = dot(r, z);
     for (int k = 0; k < 400 && !is_small(model, r); ++k) {
-      spread(model, p, workspace, u);
-      rates(model, u, workspace, q);
+      spread(model, tets, p, of_tets, u);
+      rates(model, tets, u, of_tets, q);
       ++report.products;
       const double curvature = dot(p, q);
       if (!(curvature > 0.0)) break;
@@ -120,9 +120,10 @@ VolumeLimitReport enforce_volume_limit(const Model& model, std::vector<Vec3>& x,
       for (std::size_t i = 0; i < cells; ++i) p[i] = z[i] + next / rz * p[i];
       rz = next;
     }
-    spread(model, lambda, workspace, u);
+    spread(model, tets, lambda, of_tets, u);
     parallel_for(model.node_count(), [&](Index i) { x[uz(i)] += u[uz(i)]; });
-    v = measure(model, x, workspace, c);
+    tets = compute_tet_volumes(model, x, std::move(tets));
+    v = measure(model, tets, c);
   }
   report.met = v.met;
   report.change = v.change;

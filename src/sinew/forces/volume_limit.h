@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "sinew/forces/workspace.h"
 #include "sinew/model/model.h"
 
 namespace sinew {
@@ -21,7 +20,6 @@ struct VolumeLimitReport {
 //   G W G^T lambda = -(V_c(x) - V_c),   x += W G^T lambda
 // by conjugate gradients, and again until the limit holds (at most `most` times): the shortest way
 // in the metric of the masses, so that momentum is kept. Does nothing while every limit holds.
-VolumeLimitReport enforce_volume_limit(const Model& model, std::vector<Vec3>& x,
-                                       Workspace& workspace, int most = 10);
+VolumeLimitReport enforce_volume_limit(const Model& model, std::vector<Vec3>& x, int most = 10);
 
 }  // namespace sinew

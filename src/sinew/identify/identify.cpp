@@ -59,12 +59,12 @@ Model free_body(const BodySpec& body) {
 // Median wall time of a step of the body at rest [s].
 double time_of_step(const Model& model, double h) {
   using Clock = std::chrono::steady_clock;
-  Workspace workspace(model);
+  VerletStepper stepper(model, Precision::double_);
   State state = initial_state(model);
   std::vector<double> times;
   for (int k = 0; k < 25; ++k) {
     const Clock::time_point start = Clock::now();
-    verlet_step(model, initial_controls(model), h, state, workspace);
+    stepper.step(h, initial_controls(model), state);
     times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
   }
   std::nth_element(times.begin(), times.begin() + 12, times.end());
@@ -113,10 +113,10 @@ StressCurve measure_curve(const BodySpec& body, const AskedMaterial& asked) {
     double stress = std::numeric_limits<double>::quiet_NaN();
     try {
       solver.solve(initial_controls(model), 1.0, options, state);
-      compute_forces(model, initial_controls(model), state, solver.workspace());
+      const Field& force = solver.forces().evaluate(initial_controls(model), state).force;
       stress = 0.0;
       for (const Index i : surface.nodes) {
-        stress -= solver.workspace().force[uz(i)].z() * model.rest_position[uz(i)].z();
+        stress -= force[uz(i)].z() * model.rest_position[uz(i)].z();
       }
       stress /= model.bodies[0].rest_volume;
     } catch (const Error& error) {
@@ -161,9 +161,9 @@ LawIdentity identify_law(const TetMesh& mesh, const AskedMaterial& asked, const 
   }
   Model model = free_body(body);
   finish(model);
-  Workspace workspace(model);
+  ForceEvaluator forces(model, Precision::double_);
   identity.stable_step =
-      find_stable_step(model, initial_controls(model), model.rest_position, workspace).step;
+      find_stable_step(model, initial_controls(model), model.rest_position, forces).step;
   identity.step_seconds = time_of_step(model, 0.5 * identity.stable_step);
   if (with_curve) identity.curve = measure_curve(body, asked);
   return identity;

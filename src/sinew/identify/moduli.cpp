@@ -86,8 +86,8 @@ Mat6 by_displacements(const BodySpec& body, double tolerance) {
   const Model free = body_alone(body, false);
   const Controls controls;  // no gravity
   StaticSolver solver(held);
-  Workspace workspace(free);
-  prepare_stiffness(free, free.rest_position, workspace);
+  const TetState tets = compute_tet_state(free, free.rest_position);
+  TangentProduct product;
   const Field& X = free.rest_position;
   Mat6 stiffness;
   for (int k = 0; k < 6; ++k) {
@@ -96,7 +96,7 @@ Mat6 by_displacements(const BodySpec& body, double tolerance) {
     const Field none(X.size(), Vec3::Zero());
     solver.solve_tangent({held, controls, X}, none, tolerance, u);
     Field f(X.size());
-    stiffness_damping_times({free, controls, X}, 1.0, 0.0, u, Tangent::full, workspace, f);
+    product.times({free, controls, X}, tets, 1.0, 0.0, u, Tangent::full, f);
     Mat3 stress = Mat3::Zero();
     for (std::size_t a = 0; a < X.size(); ++a) stress += f[a] * X[a].transpose();
     stress = 0.5 * (stress + stress.transpose().eval()) / free.bodies[0].rest_volume;

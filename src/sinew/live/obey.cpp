@@ -116,9 +116,8 @@ void Simulation::act(const SetSprings& c) {
 }
 
 void Simulation::act(const SaveState& c) {
-  measure_energies(*model_, controls_, run_.state,
-                   stepping_->workspace());  // fills what the file holds
-  c.done(format_frame(*model_, run_, stepping_->workspace(), io::VtuEncoding::zlib));
+  c.done(format_frame(*model_, run_, stepping_->forces().evaluate(controls_, run_.state).force,
+                      io::VtuEncoding::zlib));
 }
 
 namespace {

@@ -251,7 +251,8 @@ Status Simulation::status() {
         static_cast<double>(v.products) / static_cast<double>(std::max<std::int64_t>(1, v.newton));
   }
   s.limit = limiting();
-  s.energy = measure_energies(*model_, controls_, run_.state, stepping_->workspace());
+  s.energy = measure_energies(*model_, controls_, run_.state,
+                              stepping_->forces().evaluate(controls_, run_.state).force);
   double rest = 0.0;
   double volume = 0.0;
   for (const Body& body : model_->bodies) {
@@ -268,7 +269,7 @@ Status Simulation::status() {
   for (const ProbeReading& p : read_probes(*model_, run_.state.position)) {
     s.probes.push_back(p.displacement);
   }
-  for (const ObstacleReading& o : read_obstacles(*model_, run_.state, stepping_->workspace())) {
+  for (const ObstacleReading& o : read_obstacles(*model_, run_.state)) {
     if (s.obstacles.size() == scene_.obstacles.size()) break;  // the ball comes last
     const Obstacle& obstacle = model_->obstacles[s.obstacles.size()];
     const Mat3 turn = obstacle_pose(obstacle, run_.state.time).turn;

@@ -107,13 +107,12 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
   frames_ = open_table(folder_ / "frames.csv", frames_header, rows);
 }
 
-void Recorder::record(const Controls& controls, RunState& run, Workspace& workspace) {
-  const Energies e =
-      measure_energies(model_, controls, run.state, workspace);  // also fills the forces
+void Recorder::record(const Controls& controls, RunState& run, const std::vector<Vec3>& force) {
+  const Energies e = measure_energies(model_, controls, run.state, force);
   run.frame_times.push_back(run.state.time);
   if (vtu_) {
     io::write_file(folder_ / frame_file(scene_, run.frame_times.size() - 1),
-                   format_frame(model_, run, workspace, encoding_, cells_));
+                   format_frame(model_, run, force, encoding_, cells_));
     write_collection(run);
   }
 
@@ -124,7 +123,7 @@ void Recorder::record(const Controls& controls, RunState& run, Workspace& worksp
     add(p.position);
     add(p.displacement);
   }
-  for (const ObstacleReading& o : read_obstacles(model_, run.state, workspace)) {
+  for (const ObstacleReading& o : read_obstacles(model_, run.state)) {
     add(o.center);
     add(o.force);
     row += fmt::format(",{},{}", o.travel.norm(), against_travel(o));
@@ -149,10 +148,10 @@ void Recorder::record(const Controls& controls, RunState& run, Workspace& worksp
                       w.steps_cut_short > 0 ? "yes" : "no"));
 }
 
-std::string format_frame(const Model& model, const RunState& run, const Workspace& workspace,
+std::string format_frame(const Model& model, const RunState& run, const std::vector<Vec3>& force,
                          io::VtuEncoding encoding, std::string_view cells) {
   const std::vector<Vec3>& x = run.state.position;
-  const std::vector<Vec3> velocity = synchronous_velocity(model, run.state, workspace);
+  const std::vector<Vec3> velocity = synchronous_velocity(model, run.state, force);
   const auto nodes = uz(model.body_node_count());
   std::vector<Vec3> displacement(nodes);
   std::vector<int> pinned(nodes);
@@ -170,7 +169,7 @@ std::string format_frame(const Model& model, const RunState& run, const Workspac
     }
   }
   const std::vector<double> stretch = node_stretch(model, x);
-  const std::vector<double> pressure = measure_pressure(model, x, workspace);
+  const std::vector<double> pressure = measure_pressure(model, x);
 
   io::VtuData data;
   data.points = std::span(x).first(nodes);

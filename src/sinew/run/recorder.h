@@ -6,7 +6,6 @@
 #include <fstream>
 #include <string>
 
-#include "sinew/forces/workspace.h"
 #include "sinew/io/vtu.h"
 #include "sinew/model/controls.h"
 #include "sinew/scene/scene.h"
@@ -21,8 +20,9 @@ class Recorder {
   Recorder(const Scene& scene, const Model& model, std::filesystem::path folder,
            const RunState& run);
 
-  // Writes the frame that the state now stands at and appends its time to run.frame_times.
-  void record(const Controls& controls, RunState& run, Workspace& workspace);
+  // Writes the frame that the state now stands at and appends its time to run.frame_times. `force`:
+  // of all terms there [N] (nodes), as below.
+  void record(const Controls& controls, RunState& run, const std::vector<Vec3>& force);
 
  private:
   void write_collection(const RunState& run) const;
@@ -39,9 +39,8 @@ class Recorder {
 };
 
 // The state as a VTU file: tets with displacement, velocity, stretch, pinned, volume ratio,
-// pressure, region and body. `workspace` as measure_energies() leaves it; `cells` as
-// VtuData::encoded_cells.
-std::string format_frame(const Model& model, const RunState& run, const Workspace& workspace,
+// pressure, region and body. `cells` as VtuData::encoded_cells.
+std::string format_frame(const Model& model, const RunState& run, const std::vector<Vec3>& force,
                          io::VtuEncoding encoding, std::string_view cells = {});
 
 // Stretch of each body node: that of its spring furthest from rest, |x_ij| / l0 - 1 [-].

@@ -77,9 +77,10 @@ class Runner {
       recorder.emplace(scene_, model_, options_.out, run);
     }
     if (run.frame_times.empty()) {
-      run.start_energy =
-          measure_energies(model_, controls_, run.state, stepping.workspace()).total();
-      record(recorder, run, stepping.workspace());
+      run.start_energy = measure_energies(model_, controls_, run.state,
+                                          stepping.forces().evaluate(controls_, run.state).force)
+                             .total();
+      record(recorder, run, stepping.forces());
       save(run);
     }
 
@@ -91,7 +92,7 @@ class Runner {
         const bool finished = stepping.advance_frame(controls_, run, options_.stop);
         run.wall_seconds = wall_before + seconds_since(start);
         if (finished) {
-          record(recorder, run, stepping.workspace());
+          record(recorder, run, stepping.forces());
           good = run;
           report({run.state.time, scene_.duration, seconds_since(start), sim_before, run.frame,
                   stepping.frame_count()});
@@ -113,7 +114,7 @@ class Runner {
     }
     run.wall_seconds = wall_before + seconds_since(start);
     save(run);
-    result.summary = finish_summary(run, stepping.workspace(), result.status);
+    result.summary = finish_summary(run, stepping.forces(), result.status);
     return result;
   }
 
@@ -122,14 +123,14 @@ class Runner {
     if (run.frame_times.empty()) prepare_folder(scene_, options_);
   }
 
-  void record(std::optional<Recorder>& recorder, RunState& run, Workspace& workspace) const {
+  void record(std::optional<Recorder>& recorder, RunState& run, ForceEvaluator& forces) const {
     const StretchRange range = measure_stretch(model_, run.state.position);
     run.peak_stretch = std::max(run.peak_stretch, range.stretch);
     run.peak_compress = std::max(run.peak_compress, range.compress);
     run.peak_inverted_tets =
         std::max(run.peak_inverted_tets, count_inverted(model_, run.state.position));
     if (recorder) {
-      recorder->record(controls_, run, workspace);
+      recorder->record(controls_, run, forces.evaluate(controls_, run.state).force);
     } else {
       run.frame_times.push_back(run.state.time);
     }
@@ -143,8 +144,9 @@ class Runner {
     if (options_.on_progress) options_.on_progress(progress);
   }
 
-  Summary finish_summary(RunState& run, Workspace& workspace, RunStatus status) const {
-    Summary s = summarize(scene_, model_, controls_, meshes_, run, workspace);
+  Summary finish_summary(RunState& run, ForceEvaluator& forces, RunStatus status) const {
+    Summary s = summarize(scene_, model_, controls_, meshes_, run,
+                          forces.evaluate(controls_, run.state).force);
     s.status = status;
     s.warnings = warnings_;
     if (scene_.dt && run.step_reductions > 0) {

@@ -84,7 +84,8 @@ std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3
 }
 
 Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
-                  const std::vector<std::string>& meshes, RunState& run, Workspace& workspace) {
+                  const std::vector<std::string>& meshes, RunState& run,
+                  const std::vector<Vec3>& force) {
   const std::vector<Vec3>& x = run.state.position;
   Summary s;
   static_cast<RunCounters&>(s) = run;
@@ -122,7 +123,7 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   s.frames = run.frame;
   s.sim_seconds = run.state.time;
   s.wall_seconds = run.wall_seconds;
-  s.energy = measure_energies(model, controls, run.state, workspace);
+  s.energy = measure_energies(model, controls, run.state, force);
   s.energy_drift = s.energy.total() - run.start_energy;
   const StretchRange range = measure_stretch(model, x);
   s.max_stretch = range.stretch;
@@ -132,7 +133,7 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   if (scene.budget_ms) s.budget = summarize_budget(*scene.budget_ms, run);
   s.largest_cell_change = largest_cell_change(model, x);
   s.probes = read_probes(model, x);
-  s.obstacles = read_obstacles(model, run.state, workspace);
+  s.obstacles = read_obstacles(model, run.state);
   return s;
 }
 

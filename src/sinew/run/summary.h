@@ -90,7 +90,8 @@ std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3
 
 // Measures the run as it stands. `meshes`: where each body's mesh came from.
 Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
-                  const std::vector<std::string>& meshes, RunState& run, Workspace& workspace);
+                  const std::vector<std::string>& meshes, RunState& run,
+                  const std::vector<Vec3>& force);
 
 // The object of summary.json: docs/output.md names its keys.
 nlohmann::ordered_json to_json(const Summary& summary);

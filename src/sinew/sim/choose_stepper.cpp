@@ -10,7 +10,6 @@
 #include "sinew/base/error.h"
 #include "sinew/contact/contact_finder.h"
 #include "sinew/forces/inversion_recovery.h"
-#include "sinew/forces/volume.h"
 
 namespace sinew {
 namespace {
@@ -34,10 +33,8 @@ const char* only_verlet_knows(const Model& model) {
 }
 
 // Puts bodies that start inside out where they are led back to: what counts is how they go on.
-void recover(const Model& model, Workspace& workspace, State& state) {
-  if (!model.has_volume) return;
-  compute_volume_pressures(model, state.position, workspace);
-  if (find_tangled(model, workspace) > 0) put_tangled_bodies_at_rest(model, workspace, state);
+void recover(const Model& model, State& state) {
+  put_at_rest_shape(model, find_tangled(model, find_low_tets(model, state.position)), state);
 }
 
 struct Trial {
@@ -78,7 +75,7 @@ class Policy {
     Trial trial;
     State state = start_;
     StepMemory memory = choice.memory;
-    recover(model_, choice.stepper->workspace(), state);
+    recover(model_, state);
     const double h = options_.first_length(choice.first);
     try {
       for (int i = 0; i < trial_steps; ++i) {

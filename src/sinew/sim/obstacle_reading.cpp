@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "sinew/contact/explicit_contacts.h"
+#include "sinew/contact/contact.h"
+#include "sinew/contact/contact_finder.h"
 
 namespace sinew {
 namespace {
@@ -15,8 +16,7 @@ double longest_edge(const Model& model) {
 
 }  // namespace
 
-std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
-                                            Workspace& workspace) {
+std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state) {
   std::vector<ObstacleReading> readings = read_obstacles(model, state.position, state.time);
   const bool hard = std::any_of(model.obstacles.begin(), model.obstacles.end(),
                                 [](const Obstacle& o) { return o.hard(); });
@@ -25,9 +25,8 @@ std::vector<ObstacleReading> read_obstacles(const Model& model, const State& sta
     if (model.obstacles[o].hard()) readings[o].force = state.obstacle_force[o];
 
   std::vector<Contact> contacts;
-  if (!workspace.contacts) workspace.contacts = std::make_shared<ExplicitContacts>(model);
-  workspace.contacts->finder().find(state.position, state.position, state.time, state.time,
-                                    1e-3 * longest_edge(model), contacts);
+  ContactFinder(model).find(state.position, state.position, state.time, state.time,
+                            1e-3 * longest_edge(model), contacts);
   for (const Contact& c : contacts) {
     const Index obstacle = c.id.obstacle();
     if (obstacle < 0) continue;

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "sinew/forces/obstacles.h"
-#include "sinew/forces/workspace.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
@@ -12,7 +11,8 @@ namespace sinew {
 // By obstacle. Soft: as the positions are (forces/obstacles.h). Hard: the force is the mean over
 // the last step, depth that of the deepest place inside, and places count as touching that are
 // inside or nearer than a thousandth of the longest edge of the bodies' surfaces.
-std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
-                                            Workspace& workspace);
+// Looks for contacts from nothing where there are hard obstacles, which costs about as much as a
+// step.
+std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state);
 
 }  // namespace sinew

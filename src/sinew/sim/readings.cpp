@@ -60,9 +60,8 @@ Index World::inverted_tets() const {
 const std::vector<Vec3>& World::forces() {
   if (forces_of_ == changes_) return forces_;
   arena_.run([&] {
-    if (!scratch_) scratch_ = std::make_unique<Workspace>(*model_);
-    compute_forces(*model_, controls_, run_.state, *scratch_);
-    forces_ = scratch_->force;
+    if (!evaluator_) evaluator_ = std::make_unique<ForceEvaluator>(*model_, Precision::double_);
+    forces_ = evaluator_->evaluate(controls_, run_.state).force;
   });
   forces_of_ = changes_;
   return forces_;

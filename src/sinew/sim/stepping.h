@@ -58,7 +58,7 @@ class Stepping {
   std::int64_t frame_count() const { return frames_; }
   // Between the ends of frames [s], also where rest states need only one.
   double frame_interval() const { return frame_interval_; }
-  Workspace& workspace() { return stepper_->workspace(); }
+  ForceEvaluator& forces() { return stepper_->forces(); }
 
  private:
   bool automatic() const { return !options_.dt; }

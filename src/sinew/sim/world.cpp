@@ -120,7 +120,7 @@ void World::remember() {
     bodies_.push_back(std::move(info));
   }
   surface_ = build_surface(model_->tets, model_->body_node_count()).triangles;
-  scratch_.reset();
+  evaluator_.reset();
   finder_.reset();
   good_ = run_.state;
   clock_ = run_.state.time;
@@ -212,7 +212,7 @@ void World::rebuild(Source source, const std::string& replaced, bool other_mater
   source_ = std::move(source);
   stepping_ = std::move(stepping);
   finder_.reset();
-  scratch_.reset();
+  evaluator_.reset();
   model_ = std::move(model);
   model_hash_ = hash;
   run_ = std::move(run);

@@ -175,7 +175,7 @@ class World {
 
   // Readings, of the state numbered by changes_.
   std::uint64_t changes_ = 1, forces_of_ = 0, contacts_of_ = 0;
-  std::unique_ptr<Workspace> scratch_;
+  std::unique_ptr<ForceEvaluator> evaluator_;
   std::vector<Vec3> forces_;
   std::unique_ptr<ContactFinder> finder_;
   std::vector<Contact> contacts_;

@@ -1,6 +1,7 @@
 // The outer loop of the augmented Lagrangian. docs/methods/constraints.md.
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "sinew/solver/newton.h"
 
@@ -18,10 +19,10 @@ constexpr double stiffer = 4.0;
 }  // namespace
 
 NewtonReport minimise_augmented_lagrangian(const Objective& objective, LinearSolver& linear,
-                                           const NewtonOptions& options, Workspace& workspace,
+                                           const NewtonOptions& options, ForceEvaluator& forces,
                                            State& state) {
   if (objective.constraints == nullptr) {
-    return minimise(objective, linear, options, workspace, state);
+    return minimise(objective, linear, options, forces, state);
   }
   NewtonReport report;
   report.within = false;
@@ -29,14 +30,16 @@ NewtonReport minimise_augmented_lagrangian(const Objective& objective, LinearSol
   for (int pass = 0; pass < most_passes; ++pass) {
     NewtonOptions o = options;
     if (!report.within) o.tolerance = std::max(o.tolerance, on_the_way * std::pow(0.1, pass));
-    const NewtonReport of_pass = minimise(objective, linear, o, workspace, state);
+    NewtonReport of_pass = minimise(objective, linear, o, forces, state);
     report.newton += of_pass.newton;
     report.products += of_pass.products;
     report.force = of_pass.force;
     report.residual = of_pass.residual;
     report.rests = of_pass.rests && o.tolerance == options.tolerance;
     report.stopped = of_pass.stopped;
-    const ConstraintError error = objective.constraints->update(state.position, workspace);
+    report.pull = std::move(of_pass.pull);
+    const ConstraintError error =
+        objective.constraints->update(state.position, forces.tet_volumes(state.position));
     report.within = error.distance <= 1.0 && error.grip <= 1.0 && error.anew <= 1.0;
     if (!of_pass.rests || of_pass.stopped || (report.rests && report.within)) return report;
     if (error.distance > std::max(1.0, slow * distance)) objective.constraints->harden(stiffer);

@@ -92,15 +92,6 @@ Interval cell_interval(const Model& model, std::size_t c) {
           (1.0 + model.volume_limit[c]) * model.cell_volume[c]};
 }
 
-// Volume of a cell from workspace.tet_volume [m3].
-double cell_volume(const Model& model, const Workspace& workspace, std::size_t c) {
-  double volume = 0.0;
-  for (auto k = uz(model.cell_start[c]); k < uz(model.cell_start[c + 1]); ++k) {
-    volume += model.cell_weight[k] * workspace.tet_volume[uz(model.cell_tet[k])];
-  }
-  return volume;
-}
-
 // Calls f(k) for every limited spring; two that run at once share no node.
 template <typename F>
 void for_each_limited(const Model& model, const F& f) {
@@ -215,7 +206,7 @@ double Constraints::cell_pull(std::size_t c, double volume) const {
                     now_.pressure[c]);
 }
 
-double Constraints::value(const std::vector<Vec3>& x, const Workspace& workspace) const {
+double Constraints::value(const std::vector<Vec3>& x, std::span<const double> tet_volume) const {
   double energy = parallel_sum(static_cast<Index>(ground_stiffness_.size()), [&](Index i) {
     const auto node = uz(i);
     const double k = hardness_ * ground_stiffness_[node];
@@ -239,7 +230,7 @@ double Constraints::value(const std::vector<Vec3>& x, const Workspace& workspace
     const auto c = uz(i);
     if (cell_stiffness_[c] == 0.0) return 0.0;
     const Interval range = cell_interval(model_, c);
-    return bound_energy(cell_volume(model_, workspace, c), range.low, range.high,
+    return bound_energy(sum_of_cell(model_, c, tet_volume), range.low, range.high,
                         hardness_ * cell_stiffness_[c], now_.pressure[c]);
   });
   energy += narrow_phase_.value(x);
@@ -248,7 +239,7 @@ double Constraints::value(const std::vector<Vec3>& x, const Workspace& workspace
 
 template <typename Ground, typename Spring, typename Cell>
 void Constraints::spread(const std::vector<Vec3>& x, const Ground& ground, const Spring& spring,
-                         const Cell& cell, Workspace& workspace, std::vector<Vec3>& force) const {
+                         const Cell& cell, const TetVolumes& tets, std::vector<Vec3>& force) const {
   parallel_for(static_cast<Index>(ground_stiffness_.size()),
                [&](Index i) { force[uz(i)] += ground(uz(i)); });
   for_each_limited(model_, [&](std::size_t k) {
@@ -263,32 +254,32 @@ void Constraints::spread(const std::vector<Vec3>& x, const Ground& ground, const
   if (cell_stiffness_.empty()) return;
   std::vector<double> pressure(cell_stiffness_.size());
   parallel_for(model_.cell_count(), [&](Index c) { pressure[uz(c)] = cell(uz(c)); });
-  press_cells(model_, pressure, workspace);
-  parallel_for(model_.node_count(), [&](Index i) {
-    force[uz(i)] -= press_tets(model_, workspace, workspace.tet_pressure_change, i);
-  });
+  std::vector<double> of_tets;
+  press_cells(model_, pressure, of_tets);
+  parallel_for(model_.node_count(),
+               [&](Index i) { force[uz(i)] -= press_tets(model_, tets.gradient, of_tets, i); });
 }
 
-void Constraints::add_forces(const std::vector<Vec3>& x, Workspace& workspace,
+void Constraints::add_forces(const std::vector<Vec3>& x, const TetVolumes& tets,
                              std::vector<Vec3>& force) const {
   narrow_phase_.add_forces(x, force);
   spread(
       x, [&](std::size_t i) { return ground_push(i, x[i]); },
       [&](std::size_t k, double length) { return spring_pull(k, length); },
-      [&](std::size_t c) { return cell_pull(c, cell_volume(model_, workspace, c)); }, workspace,
+      [&](std::size_t c) { return cell_pull(c, sum_of_cell(model_, c, tets.volume)); }, tets,
       force);
 }
 
-void Constraints::add_reactions(const std::vector<Vec3>& x, Workspace& workspace,
+void Constraints::add_reactions(const std::vector<Vec3>& x, const TetVolumes& tets,
                                 std::vector<Vec3>& force) const {
   narrow_phase_.add_reactions(force);
   spread(
       x, [&](std::size_t i) { return now_.ground[i]; },
       [&](std::size_t k, double) { return now_.tension[k]; },
-      [&](std::size_t c) { return now_.pressure[c]; }, workspace, force);
+      [&](std::size_t c) { return now_.pressure[c]; }, tets, force);
 }
 
-void Constraints::linearise(const std::vector<Vec3>& x, Workspace& workspace) {
+void Constraints::linearise(const std::vector<Vec3>& x, const TetVolumes& tets) {
   narrow_phase_.linearise(x);
   node_block_.assign(ground_stiffness_.size(), Mat3::Zero());
   parallel_for(static_cast<Index>(node_block_.size()), [&](Index i) {
@@ -317,16 +308,13 @@ void Constraints::linearise(const std::vector<Vec3>& x, Workspace& workspace) {
   cell_tangent_.assign(cell_stiffness_.size(), 0.0);
   std::vector<double> pressure(cell_stiffness_.size());
   parallel_for(model_.cell_count(), [&](Index c) {
-    pressure[uz(c)] = cell_pull(uz(c), cell_volume(model_, workspace, uz(c)));
+    pressure[uz(c)] = cell_pull(uz(c), sum_of_cell(model_, uz(c), tets.volume));
     if (pressure[uz(c)] != 0.0) cell_tangent_[uz(c)] = hardness_ * cell_stiffness_[uz(c)];
   });
-  press_cells(model_, pressure, workspace);
-  parallel_for(model_.tet_count(), [&](Index t) {
-    workspace.tet_pressure[uz(t)] += workspace.tet_pressure_change[uz(t)];
-  });
+  press_cells(model_, pressure, tet_pressure_);
 }
 
-void Constraints::add_stiffness_times(const std::vector<Vec3>& u, Workspace& workspace,
+void Constraints::add_stiffness_times(const TetVolumes& tets, const std::vector<Vec3>& u,
                                       std::vector<Vec3>& out) const {
   narrow_phase_.add_stiffness_times(u, out);
   parallel_for(static_cast<Index>(node_block_.size()),
@@ -345,16 +333,18 @@ void Constraints::add_stiffness_times(const std::vector<Vec3>& u, Workspace& wor
     return;
   }
   std::vector<double> pressure(cell_tangent_.size());
-  rate_cells(model_, u, workspace, pressure);
+  std::vector<double> of_tets;
+  rate_cells(model_, tets, u, of_tets, pressure);
   for (std::size_t c = 0; c < pressure.size(); ++c) pressure[c] *= cell_tangent_[c];
-  press_cells(model_, pressure, workspace);
+  press_cells(model_, pressure, of_tets);
   parallel_for(model_.node_count(), [&](Index i) {
     if (model_.inverse_mass[uz(i)] == 0.0) return;
-    out[uz(i)] += press_tets(model_, workspace, workspace.tet_pressure_change, i);
+    out[uz(i)] += press_tets(model_, tets.gradient, of_tets, i);
   });
 }
 
-ConstraintError Constraints::update(const std::vector<Vec3>& x, const Workspace& workspace) {
+ConstraintError Constraints::update(const std::vector<Vec3>& x,
+                                    std::span<const double> tet_volume) {
   Reactions next = now_;
   const double ground = parallel_max(next.ground.size(), [&](std::size_t i) {
     if (ground_stiffness_[i] == 0.0) return 0.0;
@@ -372,7 +362,7 @@ ConstraintError Constraints::update(const std::vector<Vec3>& x, const Workspace&
   });
   const double cells = parallel_max(next.pressure.size(), [&](std::size_t i) {
     if (cell_stiffness_[i] == 0.0) return 0.0;
-    next.pressure[i] = cell_pull(i, cell_volume(model_, workspace, i));
+    next.pressure[i] = cell_pull(i, sum_of_cell(model_, i, tet_volume));
     const double k = hardness_ * cell_stiffness_[i];
     const double tolerance = std::min(cell_tolerance, 0.1 * model_.volume_limit[i]);
     return std::abs(next.pressure[i] - now_.pressure[i]) / (k * tolerance * model_.cell_volume[i]);

@@ -2,9 +2,10 @@
 // and rest states minimise. docs/methods/constraints.md.
 #pragma once
 
+#include <span>
 #include <vector>
 
-#include "sinew/forces/workspace.h"
+#include "sinew/forces/volume.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/contact_constraints.h"
 
@@ -40,21 +41,21 @@ class Constraints {
   // length `step` [s] and its slips start [m] (nodes); kept, and may be null without friction.
   void start(const State& state, const std::vector<Vec3>* from, double step);
 
-  // --- the energy for the multipliers as they are; workspace.tet_volume, tet_gradient are at x ---
+  // --- the energy for the multipliers as they are; the tets are those at x ---
 
-  double value(const std::vector<Vec3>& x, const Workspace& workspace) const;  // [J]
+  double value(const std::vector<Vec3>& x, std::span<const double> tet_volume) const;  // [J]
   // Adds the forces [N] to `force` (nodes).
-  void add_forces(const std::vector<Vec3>& x, Workspace& workspace, std::vector<Vec3>& force) const;
+  void add_forces(const std::vector<Vec3>& x, const TetVolumes& tets,
+                  std::vector<Vec3>& force) const;
 
   // Adds what the multipliers themselves push with along the directions at x (nodes).
-  void add_reactions(const std::vector<Vec3>& x, Workspace& workspace,
+  void add_reactions(const std::vector<Vec3>& x, const TetVolumes& tets,
                      std::vector<Vec3>& force) const;
 
-  // The second derivative at x, from here on below. What the pressure of a limited cell does by the
-  // curvature of its volume is left in workspace.tet_pressure, where the material's own is.
-  void linearise(const std::vector<Vec3>& x, Workspace& workspace);
-  // out += H u, rows of the free nodes.
-  void add_stiffness_times(const std::vector<Vec3>& u, Workspace& workspace,
+  // The second derivative at x, from here on below.
+  void linearise(const std::vector<Vec3>& x, const TetVolumes& tets);
+  // out += H u, rows of the free nodes, without what tet_pressure() does.
+  void add_stiffness_times(const TetVolumes& tets, const std::vector<Vec3>& u,
                            std::vector<Vec3>& out) const;
 
   // What linearise() found: a symmetric block for every node [N/m] (nodes of bodies, empty without
@@ -68,11 +69,14 @@ class Constraints {
   const std::vector<Mat3>& node_blocks() const { return node_block_; }
   const std::vector<SpringTangent>& spring_tangents() const { return spring_tangent_; }
   const std::vector<double>& cell_stiffness() const { return cell_tangent_; }  // [N/m5]
+  // What the limited cells press each tet with [Pa] (tets); empty without such cells. It acts by
+  // the curvature of the tets' volumes, as the material's own pressure does.
+  const std::vector<double>& tet_pressure() const { return tet_pressure_; }
 
   // --- the multipliers ---
 
   // Makes the pushes at x the multipliers; returns how far they were off.
-  ConstraintError update(const std::vector<Vec3>& x, const Workspace& workspace);
+  ConstraintError update(const std::vector<Vec3>& x, std::span<const double> tet_volume);
   // Multiplies every k; start() takes that back.
   void harden(double factor) {
     hardness_ *= factor;
@@ -88,7 +92,7 @@ class Constraints {
  private:
   template <typename Ground, typename Spring, typename Cell>
   void spread(const std::vector<Vec3>& x, const Ground& ground, const Spring& spring,
-              const Cell& cell, Workspace& workspace, std::vector<Vec3>& force) const;
+              const Cell& cell, const TetVolumes& tets, std::vector<Vec3>& force) const;
   double height(const Vec3& x) const;
   Vec3 slip(std::size_t node, const Vec3& x) const;
   Vec3 ground_push(std::size_t node, const Vec3& x) const;
@@ -108,6 +112,7 @@ class Constraints {
   std::vector<Mat3> node_block_;
   std::vector<SpringTangent> spring_tangent_;
   std::vector<double> cell_tangent_;
+  std::vector<double> tet_pressure_;
   ContactConstraints narrow_phase_;
 };
 

@@ -43,7 +43,7 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
     state.position = inertial;
     const double tolerance = std::clamp(0.1 * pull, options.tolerance, 1e-3);
     const NewtonReport step = minimise_augmented_lagrangian(
-        objective, linear_, {tolerance, 3 * few, options.stop, {}}, workspace_, state);
+        objective, linear_, {tolerance, 3 * few, options.stop, {}}, forces_, state);
     report.newton += step.newton;
     report.products += step.products;
     report.stopped = step.stopped;
@@ -74,8 +74,9 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
     stand_still();
     if (pull > near) continue;
     const State here = state;
-    const NewtonReport rest = settle(
-        {model_, controls}, {options.tolerance, options.max_newton, options.stop, {}}, state);
+    const NewtonReport rest =
+        settle({model_, controls}, {options.tolerance, options.max_newton, options.stop, {}},
+               forces_, state);
     report.newton += rest.newton;
     report.products += rest.products;
     if (rest.rests || rest.stopped) {

@@ -10,8 +10,6 @@
 #include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
-#include "sinew/forces/packed.h"
-#include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 
 namespace sinew {
@@ -41,9 +39,9 @@ void move_pins(const Model& model, State& state) {
 }
 
 // What loads, pins and obstacles put in since the time `since`: their forces at its end along the
-// way.
+// way. pull: of the model and the constraints on all nodes at the end [N].
 double work_of_the_outside(const Model& model, const Field& before, double since,
-                           const State& state, const Workspace& workspace) {
+                           const State& state, const Field& pull) {
   double work = 0.0;
   for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& force) {
     if (model.inverse_mass[uz(node)] > 0.0) {
@@ -52,7 +50,7 @@ double work_of_the_outside(const Model& model, const Field& before, double since
   });
   for (const Pin& pin : model.pins) {
     for (const Index node : pin.nodes) {
-      work -= workspace.force[uz(node)].dot(state.position[uz(node)] - before[uz(node)]);
+      work -= pull[uz(node)].dot(state.position[uz(node)] - before[uz(node)]);
     }
   }
   if (!model.obstacles.empty()) {
@@ -72,20 +70,22 @@ bool may_take_single(const Model& model, double tolerance) {
 }
 
 ImplicitStepper::ImplicitStepper(const Model& model)
-    : model_(model), workspace_(model), linear_(model) {}
+    : model_(model), forces_(model, Precision::double_), linear_(model) {}
 
 void ImplicitStepper::prepare(double h, const Controls& controls, const ImplicitOptions& options) {
   if (options.scheme == Scheme::sdirk2) h *= sdirk2_share;
   linear_.factor({.model = model_, .controls = controls, .inertia = 1.0 / (h * h), .rate = 1.0 / h},
-                 0.0, workspace_);
+                 0.0);
 }
 
 // Backward Euler over h from the positions `from` with `velocity`, dashpots in their directions at
 // state.position; loads and pins as they are at state.time. Moves the state's positions and sets
-// its velocities.
-bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
-                            const Controls& controls, const ImplicitOptions& options, State& state,
-                            ImplicitReport& report) {
+// its velocities. Returns what the model and the constraints pull all nodes with there [N]; nothing
+// where no equilibrium was found.
+std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
+                                            const Controls& controls,
+                                            const ImplicitOptions& options, State& state,
+                                            StepReport& report) {
   const double inertia = 1.0 / (h * h);
   // Frames end at round times, and the last digits of h differ from frame to frame: rounded, so
   // that what is kept from step to step is what a resumed run makes anew.
@@ -104,26 +104,25 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   const NewtonOptions newton_options{
       options.tolerance, options.max_newton, nullptr, {}, options.deadline};
   const bool single = options.single && may_take_single(model_, options.tolerance);
-  if (single && !packed_) packed_ = std::make_shared<PackedForces>(model_);
-  if (single) workspace_.packed = packed_;
+  if (single && !in_single_) in_single_.emplace(model_, Precision::single);
+  ForceEvaluator& forces = single ? *in_single_ : forces_;
   move_pins(model_, state);
   const Field stand = state.position;
-  const double standing = options.deadline ? objective_value(objective, state, workspace_) : 0.0;
+  const double standing = options.deadline ? objective_value(objective, state, forces) : 0.0;
   // On as it moves; with a deadline only where that costs less than to stand still.
   state.position = inertial;
   move_pins(model_, state);
-  if (options.deadline && !(objective_value(objective, state, workspace_) < standing)) {
+  if (options.deadline && !(objective_value(objective, state, forces) < standing)) {
     state.position = stand;
   }
   NewtonReport newton =
-      minimise_augmented_lagrangian(objective, linear_, newton_options, workspace_, state);
-  workspace_.packed.reset();
+      minimise_augmented_lagrangian(objective, linear_, newton_options, forces, state);
   report.newton += newton.newton;
   report.products += newton.products;
   if (!newton.rests && !options.deadline) {  // a start that flew too far: from where it stands
     state.position = stand;
     constraints_->start(state, &from, h);
-    newton = minimise_augmented_lagrangian(objective, linear_, newton_options, workspace_, state);
+    newton = minimise_augmented_lagrangian(objective, linear_, newton_options, forces_, state);
     report.newton += newton.newton;
     report.products += newton.products;
   }
@@ -131,52 +130,56 @@ bool ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
   report.ran_out = report.ran_out || newton.ran_out;
   report.contacts = constraints_->contacts();
   report.deepest = constraints_->touching().deepest(state.position);
-  report.within = report.within && newton.within;
+  report.limits_met = report.limits_met && newton.within;
   constraints_->store(state);
   state.half_velocity = blend(1.0 / h, state.position, -1.0 / h, from);
-  return newton.rests || (options.deadline && newton.force < no_limit);
+  const bool taken = newton.rests || (options.deadline && newton.force < no_limit);
+  if (!taken) return std::nullopt;
+  return std::move(newton.pull);
 }
 
 // Heat of dashpots and drag by the scheme's own weights, work along the way from `before`.
-void ImplicitStepper::account(const Field& before, double since, double weight, State& state) {
+void ImplicitStepper::account(const Field& before, double since, double weight, const Field& pull,
+                              State& state) {
   state.energy.dissipated += weight * damping_power(model_, before, state.half_velocity);
-  state.energy.work_in += work_of_the_outside(model_, before, since, state, workspace_);
+  state.energy.work_in += work_of_the_outside(model_, before, since, state, pull);
 }
 
 bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitOptions& options,
-                             State& state, ImplicitReport& report) {
+                             State& state, StepReport& report) {
   const Field x = state.position;
   const Field v = state.half_velocity;
   const double time = state.time;
   const double g = sdirk2_share;
   state.time = time + g * h;
-  if (!solve(x, v, g * h, controls, options, state, report)) return false;
+  auto pull = solve(x, v, g * h, controls, options, state, report);
+  if (!pull) return false;
   if (act(state.reactions)) return true;
   const Field v1 = state.half_velocity;
-  account(x, time, (1.0 - g) * h, state);
+  account(x, time, (1.0 - g) * h, *pull, state);
   const Field x1 = state.position;
   state.time = time + h;
-  if (!solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
-             g * h, controls, options, state, report)) {
-    return false;
-  }
-  account(x1, time + g * h, g * h, state);
+  pull = solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
+               g * h, controls, options, state, report);
+  if (!pull) return false;
+  account(x1, time + g * h, g * h, *pull, state);
   return true;
 }
 
 bool ImplicitStepper::backward_euler(double h, const Controls& controls,
                                      const ImplicitOptions& options, State& state,
-                                     ImplicitReport& report) {
+                                     StepReport& report) {
   const Field x = state.position;
   const Field v = state.half_velocity;
   state.time += h;
-  if (!solve(x, v, h, controls, options, state, report)) return false;
-  account(x, state.time - h, h, state);
+  const auto pull = solve(x, v, h, controls, options, state, report);
+  if (!pull) return false;
+  account(x, state.time - h, h, *pull, state);
   if (constraints_->empty()) return true;
   // The impulses of the ground and the limits work on the mean of the velocities before and after
   // the step, as in Verlet's balance: none where the body just rests.
   Field push(x.size(), Vec3::Zero());
-  constraints_->add_reactions(state.position, workspace_, push);
+  constraints_->add_reactions(state.position, forces_.tets(state.position), push);
   keep_free(model_, push);
   state.energy.dissipated -= 0.5 * h * (dot(push, v) + dot(push, state.half_velocity));
   const double moved = constraints_->touching().work_of_obstacles();
@@ -187,7 +190,7 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
 }
 
 bool ImplicitStepper::try_step(double h, const Controls& controls, const ImplicitOptions& options,
-                               State& state, ImplicitReport& report) {
+                               State& state, StepReport& report) {
   state.last_step = 0.0;  // the velocity is that of the time
   bool done = false;
   if (options.scheme == Scheme::sdirk2 && !act(state.reactions)) {
@@ -201,17 +204,17 @@ bool ImplicitStepper::try_step(double h, const Controls& controls, const Implici
   return true;
 }
 
-ImplicitReport ImplicitStepper::step(double h, const Controls& controls,
-                                     const ImplicitOptions& options, State& state) {
-  prepare_stiffness(model_, state.position, workspace_);
-  if (find_tangled(model_, workspace_) > 0) return lead_back(h, controls, options, state);
+StepReport ImplicitStepper::step(double h, const Controls& controls, const ImplicitOptions& options,
+                                 State& state) {
+  const std::vector<Index> tangled = find_tangled(model_, find_low_tets(model_, state.position));
+  if (!tangled.empty()) return lead_back(tangled, h, controls, options, state);
   return advance(h, controls, options, state);
 }
 
 // Steps that are cut in half where Newton's method does not arrive.
-ImplicitReport ImplicitStepper::advance(double h, const Controls& controls,
-                                        const ImplicitOptions& options, State& state) {
-  ImplicitReport report;
+StepReport ImplicitStepper::advance(double h, const Controls& controls,
+                                    const ImplicitOptions& options, State& state) {
+  StepReport report;
   const State start = state;
   double length = h;
   int parts = 1;  // of the step, all of this length

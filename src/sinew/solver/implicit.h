@@ -2,11 +2,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <span>
 
-#include "sinew/forces/workspace.h"
+#include "sinew/forces/force_evaluator.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/linear_solver.h"
+#include "sinew/solver/step_report.h"
 #include "sinew/solver/stepper_kind.h"
 
 namespace sinew {
@@ -16,25 +19,12 @@ struct ImplicitOptions {
   double tolerance = 1e-6;  // see NewtonReport::residual
   int max_newton = 50;      // Newton steps before the step is cut in half
   bool single = false;      // forces in single precision, where it may_take_single()
-  Deadline deadline = {};   // of the step; what is there then is the step, however far it is
+  Deadline deadline = {};   // the iterate of that time is the step, however far it is
 };
 
 // Whether steps to this tolerance may take forces in single precision: its digits are more than
 // enough, and the model has no ground, no contacts and no limits.
 bool may_take_single(const Model& model, double tolerance);
-
-struct ImplicitReport {
-  int newton = 0;         // Newton steps
-  int products = 0;       // Hessian products
-  int cuts = 0;           // steps that were cut in half
-  double residual = 0.0;  // the largest that was left [-]
-  bool ran_out = false;   // of time, see ImplicitOptions::deadline
-  Index contacts = 0;     // nodes that the ground pushes at the end, and contacts
-  double deepest = 0.0;   // place left inside another body or an obstacle [m]
-  double friction = 0.0;  // work of friction in contacts [J]
-  int righted = 0;        // 1 where a tangled body was led back
-  bool within = true;     // the ground and the limits hold to their tolerances
-};
 
 class ImplicitStepper {
  public:
@@ -60,33 +50,33 @@ class ImplicitStepper {
   // Where Newton's method does not arrive, the step is taken in two halves, and so on. Throws
   // Error(diverged) where ten halvings are not enough. With a deadline the step is what Newton's
   // method has by then, and no step is cut: its potential is below that of standing still.
-  ImplicitReport step(double h, const Controls& controls, const ImplicitOptions& options,
-                      State& state);
+  StepReport step(double h, const Controls& controls, const ImplicitOptions& options, State& state);
 
   // Makes what steps of length h need and a deadline should not pay for.
   void prepare(double h, const Controls& controls, const ImplicitOptions& options);
 
-  Workspace& workspace() { return workspace_; }
+  // In double precision.
+  ForceEvaluator& forces() { return forces_; }
 
  private:
-  ImplicitReport advance(double h, const Controls& controls, const ImplicitOptions& options,
-                         State& state);
-  ImplicitReport lead_back(double h, const Controls& controls, const ImplicitOptions& options,
-                           State& state);
-  bool half_righted(const State& led, std::vector<char>& righted);
+  StepReport advance(double h, const Controls& controls, const ImplicitOptions& options,
+                     State& state);
+  StepReport lead_back(std::span<const Index> tangled, double h, const Controls& controls,
+                       const ImplicitOptions& options, State& state);
   bool try_step(double h, const Controls& controls, const ImplicitOptions& options, State& state,
-                ImplicitReport& report);
+                StepReport& report);
   bool sdirk2(double h, const Controls& controls, const ImplicitOptions& options, State& state,
-              ImplicitReport& report);
+              StepReport& report);
   bool backward_euler(double h, const Controls& controls, const ImplicitOptions& options,
-                      State& state, ImplicitReport& report);
-  void account(const Field& before, double since, double weight, State& state);
-  bool solve(const Field& from, const Field& velocity, double h, const Controls& controls,
-             const ImplicitOptions& options, State& state, ImplicitReport& report);
+                      State& state, StepReport& report);
+  void account(const Field& before, double since, double weight, const Field& pull, State& state);
+  std::optional<Field> solve(const Field& from, const Field& velocity, double h,
+                             const Controls& controls, const ImplicitOptions& options, State& state,
+                             StepReport& report);
 
   const Model& model_;
-  Workspace workspace_;
-  std::shared_ptr<PackedForces> packed_;  // made when first asked for
+  ForceEvaluator forces_;                    // in double precision
+  std::optional<ForceEvaluator> in_single_;  // made when first asked for
   LinearSolver linear_;
   double constrained_inertia_ = 0.0;  // what constraints_ was made for
   std::unique_ptr<Constraints> constraints_;

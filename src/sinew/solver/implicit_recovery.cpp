@@ -1,10 +1,10 @@
 // Implicit steps of a body that is tangled. docs/methods/inversion-recovery.md.
 #include <algorithm>
+#include <iterator>
 
 #include "sinew/base/parallel.h"
 #include "sinew/contact/ground.h"
 #include "sinew/forces/inversion_recovery.h"
-#include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/solver/implicit.h"
 
@@ -13,46 +13,51 @@ namespace {
 
 constexpr int most_ways = 20;  // that are led at once
 
-}  // namespace
-
-// Whether some tets of a body that was tangled are inverted, though too few to call it so: with
-// those, the material would rest in a fold. Says which bodies no longer are.
-bool ImplicitStepper::half_righted(const State& led, std::vector<char>& righted) {
-  const std::vector<char> was = workspace_.tangled;
-  prepare_stiffness(model_, led.position, workspace_);
-  find_tangled(model_, workspace_);
-  righted.assign(was.size(), 0);
+// Those of the bodies that were tangled and no longer are, and whether some of their tets are still
+// inverted, though too few to call them tangled: with those, the material would rest in a fold.
+struct Righted {
+  std::vector<Index> bodies;
   bool half = false;
-  for (std::size_t b = 0; b < was.size(); ++b) {
-    if (was[b] == 0 || workspace_.tangled[b] != 0) continue;
-    righted[b] = 1;
-    const Range tets = model_.bodies[b].tets;
-    for (auto t = uz(tets.begin); t < uz(tets.end); ++t) {
-      half = half || workspace_.tet_volume[t] <= 0.0;
-    }
+};
+Righted find_righted(const Model& model, std::span<const Index> were, const State& led) {
+  const std::vector<LowTet> low = find_low_tets(model, led.position);
+  const std::vector<Index> still = find_tangled(model, low);
+  Righted righted;
+  std::set_difference(were.begin(), were.end(), still.begin(), still.end(),
+                      std::back_inserter(righted.bodies));
+  for (const Index b : righted.bodies) {
+    const Range tets = model.bodies[uz(b)].tets;
+    righted.half = righted.half || std::any_of(low.begin(), low.end(), [&](const LowTet& tet) {
+                     return tets.contains(tet.tet) && tet.volume <= 0.0;
+                   });
   }
-  workspace_.tangled = was;
-  return half;
+  return righted;
 }
+
+}  // namespace
 
 // Minimising leads into the nearest fold, so the nodes of tangled bodies are given the way that
 // inversion recovery pulls them; everything else takes its implicit step beside them.
-ImplicitReport ImplicitStepper::lead_back(double h, const Controls& controls,
-                                          const ImplicitOptions& options, State& state) {
-  const double energy = measure_energies(model_, controls, state, workspace_).total();
+StepReport ImplicitStepper::lead_back(std::span<const Index> tangled, double h,
+                                      const Controls& controls, const ImplicitOptions& options,
+                                      State& state) {
+  const auto energy_at = [&](const State& s) {
+    return measure_energies(model_, controls, s, forces_.evaluate(controls, s).force).total();
+  };
+  const double energy = energy_at(state);
   State led = state;
-  std::vector<char> righted;
+  Righted righted;
   for (int way = 0; way < most_ways; ++way) {
-    lead_tangled_bodies(model_, controls, h, workspace_, led);
+    lead_tangled_bodies(model_, controls, h, tangled, led);
     if (model_.ground) lift_onto_ground(model_, led.position);
-    if (!half_righted(led, righted)) break;
+    righted = find_righted(model_, tangled, led);
+    if (!righted.half) break;
   }
-  calm_bodies(model_, righted, led);
+  calm_bodies(model_, righted.bodies, led);
 
   Model others = model_;
-  for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-    if (workspace_.tangled[b] == 0) continue;
-    const Range nodes = model_.bodies[b].nodes;
+  for (const Index b : tangled) {
+    const Range nodes = model_.bodies[uz(b)].nodes;
     for (auto i = uz(nodes.begin); i < uz(nodes.end); ++i) {
       if (model_.inverse_mass[i] == 0.0) continue;
       others.inverse_mass[i] = 0.0;
@@ -66,15 +71,15 @@ ImplicitReport ImplicitStepper::lead_back(double h, const Controls& controls,
     }
   }
   state.reactions = {};
-  ImplicitReport report = ImplicitStepper(others).advance(h, controls, options, state);
-  report.righted = 1;
+  StepReport report = ImplicitStepper(others).advance(h, controls, options, state);
+  report.recovered = 1;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     if (model_.inverse_mass[i] > others.inverse_mass[i]) {
       state.half_velocity[i] = led.half_velocity[i];
     }
   }
   state.reactions = {};
-  state.energy.work_in += measure_energies(model_, controls, state, workspace_).total() - energy;
+  state.energy.work_in += energy_at(state) - energy;
   return report;
 }
 

@@ -25,25 +25,13 @@ class ImplicitSteps : public Stepper {
   StepReport step(double h, const Controls& controls, const Interrupt& interrupt, State& state,
                   StepMemory&) override {
     options_.deadline = interrupt.deadline;
-    const ImplicitReport step = stepper_.step(h, controls, options_, state);
-    StepReport report;
-    report.newton = step.newton;
-    report.products = step.products;
-    report.cuts = step.cuts;
-    report.residual = step.residual;
-    report.ran_out = step.ran_out;
-    report.contacts = step.contacts;
-    report.deepest = step.deepest;
-    report.friction = step.friction;
-    report.limits_met = step.within;
-    report.recovered = step.righted;
-    return report;
+    return stepper_.step(h, controls, options_, state);
   }
 
   void prepare(double h, const Controls& controls) override {
     stepper_.prepare(h, controls, options_);
   }
-  Workspace& workspace() override { return stepper_.workspace(); }
+  ForceEvaluator& forces() override { return stepper_.forces(); }
 
  private:
   ImplicitStepper stepper_;

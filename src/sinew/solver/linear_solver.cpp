@@ -2,8 +2,6 @@
 
 #include <cmath>
 
-#include "sinew/forces/stiffness.h"
-
 namespace sinew {
 
 LinearSolver::LinearSolver(const Model& model)
@@ -22,7 +20,7 @@ LinearSolver::LinearSolver(const Model& model)
   }
 }
 
-void LinearSolver::factor(const Objective& objective, double time, Workspace& workspace) {
+void LinearSolver::factor(const Objective& objective, double time) {
   if (is_factored(objective)) return;
   const Field& rest_position = objective.model.rest_position;
   Objective rest = objective;
@@ -32,8 +30,7 @@ void LinearSolver::factor(const Objective& objective, double time, Workspace& wo
   // to step is what a resumed run makes anew.
   rest.inertia = static_cast<double>(static_cast<float>(objective.inertia));
   if (rest.inertia > 0.0 && objective.rate > 0.0) rest.rate = std::sqrt(rest.inertia);
-  prepare_stiffness(objective.model, rest_position, workspace);
-  matrix_.assemble(rest, rest_position, time, workspace);
+  matrix_.assemble(rest, rest_position, time, compute_tet_state(objective.model, rest_position));
   preconditioner_.factor(matrix_);
   factored_model_ = &objective.model;
   factored_inertia_ = static_cast<float>(objective.inertia);
@@ -45,13 +42,10 @@ bool LinearSolver::is_factored(const Objective& objective) const {
 }
 
 void LinearSolver::assemble(const Objective& objective, const Field& x, double time,
-                            Workspace& workspace) {
-  if (!is_factored(objective)) {
-    factor(objective, time, workspace);
-    prepare_stiffness(objective.model, x, workspace);
-  }
-  if (objective.constraints != nullptr) objective.constraints->linearise(x, workspace);
-  matrix_.assemble(objective, x, time, workspace);
+                            const TetState& tets) {
+  factor(objective, time);
+  if (objective.constraints != nullptr) objective.constraints->linearise(x, tets);
+  matrix_.assemble(objective, x, time, tets);
   preconditioner_.turn(x);
 }
 

@@ -15,12 +15,12 @@ class LinearSolver {
   explicit LinearSolver(const Model& model);
 
   // Factors the preconditioner for the objective's tangent at rest; nothing where it is factored
-  // for the same model and inertia. Leaves the workspace at rest.
-  void factor(const Objective& objective, double time, Workspace& workspace);
+  // for the same model and inertia.
+  void factor(const Objective& objective, double time);
 
   // Makes the tangent K of the objective at positions x the matrix, and factors the preconditioner
-  // if need be. Expects the workspace, and leaves it, as prepare_stiffness does at x.
-  void assemble(const Objective& objective, const Field& x, double time, Workspace& workspace);
+  // if need be. `tets` are those at x.
+  void assemble(const Objective& objective, const Field& x, double time, const TetState& tets);
 
   // An approximate solution p of K p = r, 0 on nodes whose motion is given: stops at
   // |K p - r| <= forcing |r|, after `most` products, after the product at which the deadline

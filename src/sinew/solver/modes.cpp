@@ -47,6 +47,7 @@ class Subspace {
         x_(x),
         controls_(initial_controls(model)),
         at_{model, controls_, x},
+        tets_(compute_tet_state(model, x)),
         solver_(model),
         block_(start_block(model, size)) {}
 
@@ -61,10 +62,9 @@ class Subspace {
     }
     const auto size = static_cast<Eigen::Index>(block_.size());
     Eigen::MatrixXd k(size, size), m(size, size);
-    prepare_stiffness(model_, x_, solver_.workspace());
     Field ku(x_.size());
     for (std::size_t a = 0; a < block_.size(); ++a) {
-      stiffness_damping_times(at_, 1.0, 0.0, block_[a], Tangent::full, solver_.workspace(), ku);
+      product_.times(at_, tets_, 1.0, 0.0, block_[a], Tangent::full, ku);
       const Field mu = mass_times(block_[a]);
       for (std::size_t b = 0; b < block_.size(); ++b) {
         k(static_cast<Eigen::Index>(b), static_cast<Eigen::Index>(a)) = dot(block_[b], ku);
@@ -94,6 +94,8 @@ class Subspace {
   const Field& x_;
   const Controls controls_;
   const Configuration at_;
+  const TetState tets_;  // at x_
+  TangentProduct product_;
   StaticSolver solver_;
   std::vector<Field> block_;
   Eigen::VectorXd omega2_;  // of the block [rad2/s2]; empty before the first iteration

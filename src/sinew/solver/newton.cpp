@@ -6,7 +6,6 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/spring_law.h"
-#include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/solver/linear_solver.h"
@@ -52,10 +51,10 @@ Field way(const Objective& objective, const State& state) {
 }
 
 // out = C u, dashpots and viscosity as at objective.lag, and drag.
-void damping_times(const Objective& objective, const Field& u, Workspace& workspace, Field& out) {
-  out.resize(u.size());
-  stiffness_damping_times({objective.model, objective.controls, *objective.lag}, 0.0, 1.0, u,
-                          Tangent::full, workspace, out);
+Field damping_times(const Objective& objective, const Field& u, ForceEvaluator& forces) {
+  Field out(u.size());
+  forces.products().damping_times({objective.model, objective.controls, *objective.lag}, u, out);
+  return out;
 }
 
 // What is left of digits in a force that rests: a unit in the last place of the positions times
@@ -73,8 +72,7 @@ double rounding_force(const Objective& objective, const LinearSolver& linear, co
 }
 
 // See minimise(). material: what the tets pull with at a strain of 1e-5, squared [N2].
-double carried(const Objective& objective, double material, const State& state,
-               const Workspace& workspace) {
+double carried(const Objective& objective, double material, const State& state, const Field& pull) {
   const Model& model = objective.model;
   const Field outer = outer_forces(model, objective.controls, state);
   double inertial = 0.0;
@@ -87,7 +85,7 @@ double carried(const Objective& objective, double material, const State& state,
     });
   }
   const double reactions = parallel_sum(model.node_count(), [&](Index i) {
-    return model.inverse_mass[uz(i)] == 0.0 ? workspace.force[uz(i)].squaredNorm() : 0.0;
+    return model.inverse_mass[uz(i)] == 0.0 ? pull[uz(i)].squaredNorm() : 0.0;
   });
   return std::sqrt(std::max({dot(outer, outer), inertial, reactions, material}));
 }
@@ -96,19 +94,20 @@ double carried(const Objective& objective, double material, const State& state,
 // costs no more than the force there (`f` becomes it). Else, and always where `strict`, so that the
 // energy falls: halves the step until it does. Close to rest, where the change drowns in rounding,
 // the force along p has to shrink instead. Returns false if nothing did.
-bool line_search(const Objective& objective, const Field& p, bool strict, Workspace& workspace,
-                 Field& f, State& state) {
+bool line_search(const Objective& objective, const Field& p, bool strict, ForceEvaluator& forces,
+                 ObjectiveForce& f, State& state) {
   const Model& model = objective.model;
-  const double slope = dot(f, p);
+  const double slope = dot(f.free, p);
   const Field start = state.position;
   add(state.position, 1.0, p);
-  Field after = objective_force(objective, state, workspace);
-  if (!strict && std::abs(dot(after, p)) <= 0.5 * slope && dot(after, after) <= 4.0 * dot(f, f)) {
+  ObjectiveForce after = objective_force(objective, state, forces);
+  if (!strict && std::abs(dot(after.free, p)) <= 0.5 * slope &&
+      dot(after.free, after.free) <= 4.0 * dot(f.free, f.free)) {
     f = std::move(after);
     return true;
   }
   state.position = start;
-  const double before = objective_value(objective, state, workspace);
+  const double before = objective_value(objective, state, forces);
   // What the pull of the network and the push of the tets, which cancel at rest, leave of digits.
   const double rounding = 1e-13 * parallel_sum(model.tet_count(), [&](Index t) {
                             return model.tet_modulus[uz(t)] * model.rest_volume[uz(t)];
@@ -117,14 +116,14 @@ bool line_search(const Objective& objective, const Field& p, bool strict, Worksp
   for (int cut = 0; cut < 40; ++cut) {
     state.position = start;
     add(state.position, alpha, p);
-    const double now = objective_value(objective, state, workspace);
+    const double now = objective_value(objective, state, forces);
     if (now <= before - 1e-4 * alpha * slope) {
-      f = objective_force(objective, state, workspace);
+      f = objective_force(objective, state, forces);
       return true;
     }
     if (alpha * slope <= 1e-9 * std::max(std::abs(before), std::abs(now)) + rounding) {
-      after = objective_force(objective, state, workspace);
-      if (std::abs(dot(after, p)) <= 0.9 * slope) {
+      after = objective_force(objective, state, forces);
+      if (std::abs(dot(after.free, p)) <= 0.9 * slope) {
         f = std::move(after);
         return true;
       }
@@ -170,9 +169,10 @@ class Reach {
 
 }  // namespace
 
-double objective_value(const Objective& objective, const State& state, Workspace& workspace) {
+double objective_value(const Objective& objective, const State& state, ForceEvaluator& forces) {
   const Model& model = objective.model;
-  double e = potential_energy(model, objective.controls, state, workspace);
+  const std::span<const double> tet_volume = forces.tet_volumes(state.position);
+  double e = potential_energy(configuration(model, objective.controls, state), tet_volume);
   if (objective.share != 0.0) {
     e += objective.share * parallel_sum(model.node_count(), [&](Index i) {
            return (*objective.dead_force)[uz(i)].dot(state.position[uz(i)] -
@@ -190,23 +190,23 @@ double objective_value(const Objective& objective, const State& state, Workspace
     e += 0.5 * objective.rate * damping_power(model, *objective.lag, way(objective, state));
   }
   if (objective.constraints != nullptr) {
-    e += objective.constraints->value(state.position, workspace);
+    e += objective.constraints->value(state.position, tet_volume);
   }
   return e;
 }
 
-Field objective_force(const Objective& objective, const State& state, Workspace& workspace) {
+ObjectiveForce objective_force(const Objective& objective, const State& state,
+                               ForceEvaluator& forces) {
   const Model& model = objective.model;
-  compute_forces(model, objective.controls, state, workspace);
+  ObjectiveForce found;
+  found.pull = forces.evaluate(objective.controls, state).force;
   if (objective.constraints != nullptr) {
-    objective.constraints->add_forces(state.position, workspace, workspace.force);
+    objective.constraints->add_forces(state.position, forces.tets(state.position), found.pull);
   }
-  Field f = workspace.force;
-  if (objective.rate > 0.0) {
-    Field damped;
-    damping_times(objective, way(objective, state), workspace, damped);
-    add(f, -objective.rate, damped);
-  }
+  found.free = found.pull;
+  Field& f = found.free;
+  if (objective.rate > 0.0)
+    add(f, -objective.rate, damping_times(objective, way(objective, state), forces));
   if (objective.share != 0.0) add(f, -objective.share, *objective.dead_force);
   if (objective.inertia > 0.0) {
     parallel_for(model.node_count(), [&](Index i) {
@@ -215,24 +215,28 @@ Field objective_force(const Objective& objective, const State& state, Workspace&
     });
   }
   keep_free(model, f);
-  return f;
+  return found;
 }
 
-NewtonReport minimise(const Objective& objective, LinearSolver& linear,
-                      const NewtonOptions& options, Workspace& workspace, State& state) {
+namespace {
+
+// The steps of minimise(), from the force at the state; `f` becomes that at the end.
+NewtonReport newton_steps(const Objective& objective, LinearSolver& linear,
+                          const NewtonOptions& options, ForceEvaluator& forces, State& state,
+                          ObjectiveForce& f) {
   NewtonReport report;
   const Reach reach(objective.model, state);
   const double material = 1e-10 * linear.pull2();
   const double rounding = rounding_force(objective, linear, state);
   const Clock::time_point start = Clock::now();
-  Field f = objective_force(objective, state, workspace);
+  f = objective_force(objective, state, forces);
   Deadline deadline = options.deadline;
   // The line search and the force where it ends take about three evaluations such as this one.
   if (deadline) *deadline -= 3 * (Clock::now() - start);
   Field p;
   for (;;) {
-    report.force = std::sqrt(dot(f, f));
-    const double scale = carried(objective, material, state, workspace);
+    report.force = std::sqrt(dot(f.free, f.free));
+    const double scale = carried(objective, material, state, f.pull);
     report.residual = report.force == 0.0 ? 0.0 : report.force / scale;
     if (options.on_progress) options.on_progress({report.newton, report.residual});
     if (!(report.force < no_limit) || !reach.holds(state)) return report;
@@ -242,14 +246,21 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
     report.ran_out = report.newton > 0 && passed(deadline);
     if (report.ran_out) return report;
     const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.3);
-    // Forces in single precision leave no gradients of the tets behind.
-    if (workspace.packed) prepare_stiffness(objective.model, state.position, workspace);
-    linear.assemble(objective, state.position, state.time, workspace);
-    report.products += linear.solve(f, forcing, most_products, deadline, p);
+    linear.assemble(objective, state.position, state.time, forces.tets(state.position));
+    report.products += linear.solve(f.free, forcing, most_products, deadline, p);
     ++report.newton;
-    if (!line_search(objective, p, options.deadline.has_value(), workspace, f, state))
-      return report;
+    if (!line_search(objective, p, options.deadline.has_value(), forces, f, state)) return report;
   }
+}
+
+}  // namespace
+
+NewtonReport minimise(const Objective& objective, LinearSolver& linear,
+                      const NewtonOptions& options, ForceEvaluator& forces, State& state) {
+  ObjectiveForce f;
+  NewtonReport report = newton_steps(objective, linear, options, forces, state, f);
+  report.pull = std::move(f.pull);
+  return report;
 }
 
 }  // namespace sinew

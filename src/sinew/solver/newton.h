@@ -6,7 +6,7 @@
 #include <functional>
 #include <vector>
 
-#include "sinew/forces/workspace.h"
+#include "sinew/forces/force_evaluator.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/constraints.h"
@@ -38,11 +38,14 @@ struct Objective {
 };
 
 // Its value [J]. state.half_velocity has to be zero here and below.
-double objective_value(const Objective& objective, const State& state, Workspace& workspace);
+double objective_value(const Objective& objective, const State& state, ForceEvaluator& forces);
 
-// Minus its gradient on the free nodes, 0 on the others [N]. Leaves in workspace.force what the
-// model and the constraints pull all nodes with.
-Field objective_force(const Objective& objective, const State& state, Workspace& workspace);
+struct ObjectiveForce {
+  Field free;  // minus the gradient of the objective on the free nodes, 0 on the others [N]
+  Field pull;  // what the model and the constraints pull all nodes with [N]
+};
+ObjectiveForce objective_force(const Objective& objective, const State& state,
+                               ForceEvaluator& forces);
 
 // v . C v of dashpots and viscosity as at positions x, and drag [W], v of all nodes.
 double damping_power(const Model& model, const Field& x, const Field& v);
@@ -70,6 +73,7 @@ struct NewtonReport {
   double force = 0.0;     // |force| left [N]
   double residual = 0.0;  // as a share of what the body carries [-]
   bool within = true;     // the constraints hold (minimise_augmented_lagrangian)
+  Field pull;             // what the model and the constraints pull all nodes with at the end [N]
 };
 
 // Moves the free nodes of the state to the minimum near where they are.
@@ -78,13 +82,13 @@ struct NewtonReport {
 // inertial ones on the free nodes, the model's forces on the others, and 1e-5 of what the material
 // pulls with at a strain of one.
 NewtonReport minimise(const Objective& objective, LinearSolver& linear,
-                      const NewtonOptions& options, Workspace& workspace, State& state);
+                      const NewtonOptions& options, ForceEvaluator& forces, State& state);
 
 // The same with the multipliers of objective.constraints found too: minimises for given
 // multipliers, makes the pushes found the new ones, and again until the conditions hold and the
 // forces rest.
 NewtonReport minimise_augmented_lagrangian(const Objective& objective, LinearSolver& linear,
-                                           const NewtonOptions& options, Workspace& workspace,
+                                           const NewtonOptions& options, ForceEvaluator& forces,
                                            State& state);
 
 void keep_free(const Model& model, Field& f);  // 0 on the nodes whose motion is given

@@ -19,19 +19,11 @@ class RestSteps : public Stepper {
   StepReport step(double h, const Controls& controls, const Interrupt& interrupt, State& state,
                   StepMemory&) override {
     options_.stop = interrupt.stop;
-    const StaticReport rest = solver_.solve(controls, state.time + h, options_, state);
-    StepReport report;
-    report.newton = rest.newton;
-    report.products = rest.products;
-    report.residual = rest.residual;
-    report.contacts = rest.contacts;
-    report.limits_met = rest.within;
-    report.stopped = rest.stopped;
-    return report;
+    return solver_.solve(controls, state.time + h, options_, state);
   }
 
   bool finds_rest() const override { return true; }
-  Workspace& workspace() override { return solver_.workspace(); }
+  ForceEvaluator& forces() override { return solver_.forces(); }
 
  private:
   StaticSolver solver_;

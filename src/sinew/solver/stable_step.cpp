@@ -6,11 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <utility>
+#include <variant>
 
 #include "sinew/base/parallel.h"
-#include "sinew/forces/packed_stiffness.h"
-#include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
@@ -30,34 +29,37 @@ void scale_nodes(const Model& model, Field& u) {  // u = M^-1/2 u
 // y = M^-1/2 (a K + b C) M^-1/2 u at positions x: by the packed forces where they can.
 class ScaledTangent {
  public:
-  ScaledTangent(const Model& model, const Controls& controls, const Field& x, Workspace& workspace)
-      : model_(model),
-        controls_(controls),
-        x_(x),
-        workspace_(workspace),
-        scratch_(x.size()),
-        packed_(PackedStiffness::at(model, controls, x, workspace)) {
-    if (!packed_) prepare_stiffness(model, x, workspace);
-  }
+  ScaledTangent(const Model& model, const Controls& controls, const Field& x,
+                ForceEvaluator& forces)
+      : model_(model), products_(products(model, controls, x, forces)), scratch_(x.size()) {}
+
   void times(double a, double b, const Field& u, Field& y) {
     scratch_ = u;
     scale_nodes(model_, scratch_);
-    if (packed_) {
-      packed_->times(a, b, scratch_, y);
-    } else {
-      stiffness_damping_times({model_, controls_, x_}, a, b, scratch_, Tangent::only_stiffening,
-                              workspace_, y);
-    }
+    std::visit([&](auto& products) { products.times(a, b, scratch_, y); }, products_);
     scale_nodes(model_, y);
   }
 
  private:
+  struct PlainStiffness {
+    Configuration at;
+    const TetState& tets;
+    TangentProduct& product;
+    void times(double a, double b, std::span<const Vec3> u, std::span<Vec3> out) {
+      product.times(at, tets, a, b, u, Tangent::only_stiffening, out);
+    }
+  };
+  using Products = std::variant<PackedStiffness, PlainStiffness>;
+
+  static Products products(const Model& model, const Controls& controls, const Field& x,
+                           ForceEvaluator& forces) {
+    if (auto packed = forces.packed_products(controls, x)) return std::move(*packed);
+    return PlainStiffness{{model, controls, x}, forces.tets(x), forces.products()};
+  }
+
   const Model& model_;
-  const Controls& controls_;
-  const Field& x_;
-  Workspace& workspace_;
+  Products products_;
   Field scratch_;
-  std::optional<PackedStiffness> packed_;
 };
 
 // Numbers in [-1, 1] that look random and are the same everywhere: a start that no symmetry of the
@@ -136,7 +138,7 @@ double positive_root(double a, double b) {
 // Sums of the absolute values of the rows of K that network and volume have, one per node: over
 // the pairs for L, over tets and cells for kappa/V (grad V)(grad V)^T and for s d2v/dx2, whose
 // blocks are the opposite edges' cross products over 6.
-std::vector<double> row_sums(const Model& model, const Field& x, const Workspace& workspace) {
+std::vector<double> row_sums(const Model& model, const Field& x) {
   std::vector<double> sums(x.size(), 0.0);
   if (!model.network_start.empty()) {
     for (std::size_t n = 0; n < x.size(); ++n) {
@@ -152,6 +154,7 @@ std::vector<double> row_sums(const Model& model, const Field& x, const Workspace
     const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, x[uz(tet[3])] - x0);
     return std::array<double, 4>{g[0].norm(), g[1].norm(), g[2].norm(), g[3].norm()};
   };
+  const std::vector<double> pressure = pressures_of_tets(model, x);
   std::vector<double> cell_norm(model.cell_volume.size(), 0.0);
   for (std::size_t t = 0; t < model.tets.size(); ++t) {
     const auto norms = area_norms(t);
@@ -173,7 +176,7 @@ std::vector<double> row_sums(const Model& model, const Field& x, const Workspace
       for (std::size_t b = 0; b < a; ++b) edges += (x[uz(tet[a])] - x[uz(tet[b])]).norm();
     }
     for (std::size_t a = 0; a < 4; ++a) {
-      sums[uz(tet[a])] += bulk * norms[a] + std::abs(workspace.tet_pressure[t]) * edges / 6.0;
+      sums[uz(tet[a])] += bulk * norms[a] + std::abs(pressure[t]) * edges / 6.0;
     }
   }
   return sums;
@@ -181,8 +184,8 @@ std::vector<double> row_sums(const Model& model, const Field& x, const Workspace
 
 // A step that is stable whatever the mesh: per node, the rows of K and C summed (Gershgorin).
 double guaranteed_step(const Model& model, const Controls& controls, const Field& x,
-                       const Workspace& workspace, Index& stiffest) {
-  std::vector<double> rows = row_sums(model, x, workspace);
+                       Index& stiffest) {
+  std::vector<double> rows = row_sums(model, x);
   for_each_type(Terms{}, [&](auto term) {
     if constexpr (!Bounded<decltype(term)>)
       add_row_sums(term, {model, controls, x}, Tangent::only_stiffening, rows);
@@ -215,16 +218,15 @@ double guaranteed_step(const Model& model, const Controls& controls, const Field
 }  // namespace
 
 StableStep find_stable_step(const Model& model, const Controls& controls, const Field& x,
-                            Workspace& workspace) {
+                            ForceEvaluator& forces) {
   StableStep result;
-  if (model.has_volume) compute_pressures(model, x, workspace);
-  double h = guaranteed_step(model, controls, x, workspace, result.stiffest);
+  double h = guaranteed_step(model, controls, x, result.stiffest);
   result.step = h;
   if (!std::isfinite(h)) return result;
 
   Field u = scattered(model);
   Field y(u.size());
-  ScaledTangent tangent(model, controls, x, workspace);
+  ScaledTangent tangent(model, controls, x, forces);
   // The largest eigenvalue is a convex function of h, so after its first step Newton's method
   // comes from above and two or three steps do; without damping the first one is exact.
   for (int newton = 0; newton < 8; ++newton) {
@@ -251,8 +253,8 @@ StableStep find_stable_step(const Model& model, const Controls& controls, const 
 }
 
 double watch_stable_step(const Model& model, const Controls& controls, const Field& x, double h,
-                         Field& mode, Workspace& workspace) {
-  ScaledTangent tangent(model, controls, x, workspace);
+                         Field& mode, ForceEvaluator& forces) {
+  ScaledTangent tangent(model, controls, x, forces);
   Top top = lanczos([&](const Field& in, Field& out) { tangent.times(h * h, 2.0 * h, in, out); },
                     mode, 3);
   if (!(top.value > 0.0)) return h;

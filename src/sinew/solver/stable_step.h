@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "sinew/forces/workspace.h"
+#include "sinew/forces/force_evaluator.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
@@ -25,14 +25,14 @@ struct StableStep {
 // with Lanczos inside, matrix-free, every estimate on the safe side by its residual.
 //
 StableStep find_stable_step(const Model& model, const Controls& controls,
-                            const std::vector<Vec3>& x, Workspace& workspace);
+                            const std::vector<Vec3>& x, ForceEvaluator& forces);
 
 // The same during a run, at the price of two steps in double precision or five in single: three
 // products of Lanczos that start from `mode`, the mode found before, with the step `h` now taken;
 // `mode` becomes the better one. Returns a stable step, which with damping may be shorter than the
 // largest. What three products cannot see is not in it: leave a margin.
 double watch_stable_step(const Model& model, const Controls& controls, const std::vector<Vec3>& x,
-                         double h, std::vector<Vec3>& mode, Workspace& workspace);
+                         double h, std::vector<Vec3>& mode, ForceEvaluator& forces);
 
 // "spring 12 (body beam, node 3 to body beam, node 4): k = ..., l0 = ..., c = ...".
 std::string describe_spring(const Model& model, Index spring);

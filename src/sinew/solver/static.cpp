@@ -179,7 +179,7 @@ double nudge(const Model& model, const Controls& controls) {
 
 StaticSolver::StaticSolver(const Model& model)
     : model_(model),
-      workspace_(model),
+      forces_(model, Precision::double_),
       linear_(model),
       constraints_(model, 10.0 * model.start_gravity.norm() / mean_edge(model), 0.0, false) {
   double stiffest = 0.0;
@@ -191,12 +191,13 @@ StaticSolver::StaticSolver(const Model& model)
     stiffest = std::max(stiffest, bulk / model.tet_modulus[t]);
   }
   if (stiffest <= 2.0 * soft_volume) return;
-  softened_ = std::make_unique<Model>(model);
+  softened_.reset(new Softened{model});
+  Model& soft = softened_->model;
   for (std::size_t t = 0; t < model.tets.size(); ++t) {
     const double most = soft_volume * model.tet_modulus[t];
-    softened_->tet_bulk[t] = std::min(softened_->tet_bulk[t], most);
+    soft.tet_bulk[t] = std::min(soft.tet_bulk[t], most);
     for (const Index c : model.cells[t]) {
-      if (c >= 0) softened_->cell_bulk[uz(c)] = std::min(softened_->cell_bulk[uz(c)], most);
+      if (c >= 0) soft.cell_bulk[uz(c)] = std::min(soft.cell_bulk[uz(c)], most);
     }
   }
 }
@@ -210,10 +211,10 @@ int StaticSolver::solve_tangent(const Configuration& at, const Field& rhs, doubl
   double before = no_limit;
   int products = 0;
   const Field x(at.x.begin(), at.x.end());
-  prepare_stiffness(model_, x, workspace_);
-  linear_.assemble(Objective{model_, at.controls}, x, at.time, workspace_);
+  const TetState& tets = forces_.tets(x);
+  linear_.assemble(Objective{model_, at.controls}, x, at.time, tets);
   while (products < most) {
-    stiffness_damping_times(at, 1.0, 0.0, u, Tangent::full, workspace_, q);
+    forces_.products().times(at, tets, 1.0, 0.0, u, Tangent::full, q);
     ++products;
     r = rhs;
     keep_free(model_, r);
@@ -240,7 +241,8 @@ int StaticSolver::solve_tangent(const Configuration& at, const Field& rhs, doubl
 // Minimises. Along the ground, and about its normal, nothing holds a body that rests on it: a weak
 // spring from every node to where it starts does, sigma m / 2 |x - x_start|^2, which moves along
 // until it carries nothing (the proximal point method, Rockafellar 1976).
-NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& options, State& state) {
+NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& options,
+                                  ForceEvaluator& forces, State& state) {
   constraints_.start(state, nullptr, 0.0);
   if (!constraints_.empty()) objective.constraints = &constraints_;
   objective.inertia = nudge_;
@@ -251,7 +253,7 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
     const Field start = state.position;
     if (nudge_ > 0.0) objective.inertial = &start;
     const NewtonReport once =
-        minimise_augmented_lagrangian(objective, linear_, options, workspace_, state);
+        minimise_augmented_lagrangian(objective, linear_, options, forces, state);
     constraints_.store(state);
     constraints_.start(state, nullptr, 0.0);
     const int newton = report.newton + once.newton;
@@ -289,26 +291,22 @@ int StaticSolver::move_pins_to(const Controls& controls, double start_time, doub
   return products;
 }
 
-StaticReport StaticSolver::solve(const Controls& controls, double time,
-                                 const StaticOptions& options, State& state) {
-  StaticReport report;
+StepReport StaticSolver::solve(const Controls& controls, double time, const StaticOptions& options,
+                               State& state) {
+  StepReport report;
   const double start_time = state.time;
   nudge_ = nudge(model_, controls);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
   state.last_step = 0.0;
   state.time = time;  // of the loads; the pins follow below
   refuse_unheld_bodies(model_, controls, outer_forces(model_, controls, state));
-  compute_forces(model_, controls, state, workspace_);
-  if (find_tangled(model_, workspace_) > 0) {
-    put_tangled_bodies_at_rest(model_, workspace_, state);
-    compute_forces(model_, controls, state, workspace_);
-  }
-  if (nudge_ > 0.0) put_on_ground(model_, controls, state);
-
+  put_at_rest_shape(model_, find_tangled(model_, find_low_tets(model_, state.position)), state);
   // The dead force makes the start of the solve a rest state, so that the way from there to the
   // goal can be cut into small steps.
-  Field dead_force = workspace_.force;
+  Field dead_force = forces_.evaluate(controls, state).force;
   keep_free(model_, dead_force);
+  if (nudge_ > 0.0) put_on_ground(model_, controls, state);
+
   const int turns =
       static_cast<int>(std::ceil(pins_turn(model_, start_time, time) / turn_per_load_step));
   double length = 1.0 / std::max({1, options.min_load_steps, turns});
@@ -324,14 +322,13 @@ StaticReport StaticSolver::solve(const Controls& controls, double time,
     const auto account = [&](const NewtonReport& r) {
       report.newton += r.newton;
       report.products += r.products;
-      report.force = r.force;
       report.residual = r.residual;
       report.contacts = constraints_.contacts();
-      report.within = r.within;
+      report.limits_met = r.within;
       report.stopped = r.stopped && !r.rests;
       return r.rests || r.stopped;
     };
-    const auto newton = [&](const Model& model, double tolerance) {
+    const auto newton = [&](const Model& model, ForceEvaluator& forces, double tolerance) {
       const Objective objective{model, controls, &dead_force, gradual ? 1.0 - next : 0.0};
       NewtonOptions o{tolerance, options.max_newton, options.stop, {}};
       if (options.on_progress) {
@@ -339,11 +336,12 @@ StaticReport StaticSolver::solve(const Controls& controls, double time,
           options.on_progress({report.load_steps, next, before_this + p.newton, p.residual});
         };
       }
-      return account(settle(objective, o, state));
+      return account(settle(objective, o, forces, state));
     };
     // On the way it is enough to stay near the path.
     const double tolerance = next < 1.0 ? std::max(options.tolerance, 1e-3) : options.tolerance;
-    if ((!softened_ || newton(*softened_, 1e-2)) && newton(model_, tolerance)) {
+    if ((!softened_ || newton(softened_->model, softened_->forces, 1e-2)) &&
+        newton(model_, forces_, tolerance)) {
       done = next;
       if (report.stopped) break;
       if (cuts > 0) {

@@ -6,11 +6,12 @@
 #include <functional>
 #include <memory>
 
+#include "sinew/forces/force_evaluator.h"
 #include "sinew/forces/term.h"
-#include "sinew/forces/workspace.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/linear_solver.h"
+#include "sinew/solver/step_report.h"
 
 namespace sinew {
 
@@ -18,7 +19,7 @@ struct StaticProgress {
   int load_step = 0;      // 1, 2, ...
   double load = 0.0;      // share of the way to the new loads and pins that is done [-]
   int newton = 0;         // Newton steps so far, in all
-  double residual = 0.0;  // see StaticReport
+  double residual = 0.0;  // see StepReport
 };
 
 struct StaticOptions {
@@ -28,20 +29,6 @@ struct StaticOptions {
   int min_load_steps = 1;   // pins that turn far get more of themselves (20 degrees each)
   const std::atomic<bool>* stop = nullptr;  // ends after the Newton step under way
   std::function<void(const StaticProgress&)> on_progress;
-};
-
-struct StaticReport {
-  // |f| over the free nodes divided by the norm of what they carry: the larger of the outer forces
-  // on the free nodes and the material's forces on the pinned ones (reactions); where both vanish,
-  // by 1e-5 of what the material pulls with at a strain of one.
-  double residual = 0.0;
-  double force = 0.0;  // |f| itself [N]
-  int load_steps = 0;
-  int newton = 0;
-  int products = 0;      // Hessian products taken by the conjugate gradients
-  Index contacts = 0;    // nodes that the ground pushes
-  bool within = true;    // the ground and the limits hold to their tolerances
-  bool stopped = false;  // by options.stop; the state is then the best so far
 };
 
 class StaticSolver {
@@ -63,8 +50,9 @@ class StaticSolver {
   // after two cuts the body is followed, once, as it falls to rest.
   // Throws Error(input) where a body has nothing to hold it against the forces on it, and
   // Error(diverged) where no rest state is found.
-  StaticReport solve(const Controls& controls, double time, const StaticOptions& options,
-                     State& state);
+  // Where options.stop ends it, the state is the best so far.
+  StepReport solve(const Controls& controls, double time, const StaticOptions& options,
+                   State& state);
 
   // Solves K u = rhs for the free nodes with the tangent there by conjugate gradients, to
   // |K u - rhs| <= tolerance |rhs|; u of the others is kept as given and acts as a prescribed
@@ -72,7 +60,8 @@ class StaticSolver {
   int solve_tangent(const Configuration& at, const std::vector<Vec3>& rhs, double tolerance,
                     std::vector<Vec3>& u);
 
-  Workspace& workspace() { return workspace_; }
+  // In double precision.
+  ForceEvaluator& forces() { return forces_; }
 
  private:
   NewtonReport relax_dynamically(const Controls& controls, double start_time, double time,
@@ -80,14 +69,20 @@ class StaticSolver {
                                  State& state);
   int move_pins_to(const Controls& controls, double start_time, double time, double share,
                    State& state);
-  NewtonReport settle(Objective objective, const NewtonOptions& options, State& state);
+  NewtonReport settle(Objective objective, const NewtonOptions& options, ForceEvaluator& forces,
+                      State& state);
 
   const Model& model_;
-  Workspace workspace_;
+  ForceEvaluator forces_;
   double nudge_ = 0.0;  // see settle() [1/s2]; 0 where no body rests on the ground alone
   LinearSolver linear_;
   Constraints constraints_;
-  std::unique_ptr<Model> softened_;  // with less stiff volume, where that helps; else none
+  // The model with less stiff volume, where that helps; else none.
+  struct Softened {
+    Model model;
+    ForceEvaluator forces{model, Precision::double_};
+  };
+  std::unique_ptr<Softened> softened_;
 };
 
 }  // namespace sinew

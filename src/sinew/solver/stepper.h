@@ -10,30 +10,14 @@
 #include <string>
 #include <vector>
 
-#include "sinew/forces/workspace.h"
+#include "sinew/forces/force_evaluator.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/deadline.h"
+#include "sinew/solver/step_report.h"
 #include "sinew/solver/stepper_kind.h"
 
 namespace sinew {
-
-// What a step took and what it left. sim/run_counters.h says how these add up over a run.
-struct StepReport {
-  int newton = 0;                 // steps of Newton's method
-  int products = 0;               // Hessian products they took
-  int cuts = 0;                   // times that the step was cut in half
-  double residual = 0.0;          // the largest left, see NewtonReport::residual [-]
-  bool ran_out = false;           // of time, see Interrupt::deadline
-  bool stopped = false;           // by Interrupt::stop: the step is not done
-  Index contacts = 0;             // places that touch at the end
-  double deepest = 0.0;           // a place was left inside what it touched [m]
-  double friction = 0.0;          // work of friction in contacts [J]
-  int limit_sweeps = 0;           // sweeps that moved a spring
-  bool limits_met = true;         // the ground and the limits hold to their tolerances
-  int recovered = 0;              // bodies with inversion recovery (forces/inversion_recovery.h)
-  double stable_step = no_limit;  // what the forces of this step allow the next one [s]
-};
 
 // What may end a step before it is done.
 struct Interrupt {
@@ -92,7 +76,9 @@ class Stepper {
   // Whether steps lead to rest states: as long as the frame, whatever dt says.
   virtual bool finds_rest() const { return false; }
 
-  virtual Workspace& workspace() = 0;
+  // Evaluates forces in the precision of the steps, for measurements between them. No step depends
+  // on what was evaluated before it.
+  virtual ForceEvaluator& forces() = 0;
 };
 
 // The model must outlive the stepper. Throws Error(internal) for StepperKind::automatic.

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "sinew/base/words.h"
+#include "sinew/forces/precision.h"
 
 namespace sinew {
 
@@ -27,12 +28,6 @@ enum class Scheme {
 };
 constexpr std::array<Word<Scheme>, 2> words_of(Scheme) {
   return {{{Scheme::sdirk2, "sdirk2"}, {Scheme::backward_euler, "backward-euler"}}};
-}
-
-// Of the forces of tets and springs.
-enum class Precision { single, double_ };
-constexpr std::array<Word<Precision>, 2> words_of(Precision) {
-  return {{{Precision::single, "single"}, {Precision::double_, "double"}}};
 }
 
 }  // namespace sinew

@@ -255,12 +255,18 @@ Mat3 TangentMatrix::near_block(std::size_t entry) const {
 
 // B_ab = -K_ab, a < b the ends of each edge, and B_ba, its transpose.
 void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
-                                   const Workspace& workspace) {
+                                   const TetState& tets) {
   const Model& model = objective.model;
   parallel_for(static_cast<Index>(tet_stiffness_.size()), [&](Index t) {
-    tet_stiffness_[uz(t)] = tet_volume_stiffness(model, workspace, uz(t));
-    tet_push_[uz(t)] = static_cast<float>(workspace.tet_pressure[uz(t)] / 6.0);
+    tet_stiffness_[uz(t)] = tet_volume_stiffness(model, uz(t), tets.volume[uz(t)]);
+    tet_push_[uz(t)] = static_cast<float>(tets.pressure[uz(t)] / 6.0);
   });
+  if (objective.constraints != nullptr) {
+    const std::vector<double>& limits = objective.constraints->tet_pressure();
+    parallel_for(static_cast<Index>(limits.size()), [&](Index t) {
+      tet_push_[uz(t)] = static_cast<float>((tets.pressure[uz(t)] + limits[uz(t)]) / 6.0);
+    });
+  }
   const bool viscous = !edge_viscous_.empty() && objective.rate > 0.0;
   parallel_for(viscous ? model.viscous_cell_count() : 0, [&](Index cell) {
     viscous_deformation_[uz(cell)] = viscous_deformation(model, *objective.lag, cell);
@@ -300,7 +306,7 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
       }
     }
     if (rare) {
-      const Mat3 more = rare_block(objective, x, workspace, e);
+      const Mat3 more = rare_block(objective, x, tets, e);
       for (int c = 0; c < 3; ++c) {
         pair[0].column[static_cast<std::size_t>(c)] += Float4(Vec3(more.col(c)));
         pair[1].column[static_cast<std::size_t>(c)] += Float4(Vec3(more.row(c)));
@@ -316,8 +322,8 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
 
 // What not every edge has in B_ab: tets that keep their own volume or turn over, springs, dashpots,
 // limits and viscosity.
-Mat3 TangentMatrix::rare_block(const Objective& objective, const Field& x,
-                               const Workspace& workspace, std::size_t e) const {
+Mat3 TangentMatrix::rare_block(const Objective& objective, const Field& x, const TetState& tets,
+                               std::size_t e) const {
   const Model& model = objective.model;
   const auto [a, b] = edges_[e];
   Mat3 block = Mat3::Zero();
@@ -328,8 +334,8 @@ Mat3 TangentMatrix::rare_block(const Objective& objective, const Field& x,
     const auto corner = [&](Index node) {
       return static_cast<std::size_t>(std::find(tet.begin(), tet.end(), node) - tet.begin());
     };
-    block -= tet_stiffness_[t] / model.rest_volume[t] * workspace.tet_gradient[t][corner(a)] *
-             workspace.tet_gradient[t][corner(b)].transpose();
+    block -= tet_stiffness_[t] / model.rest_volume[t] * tets.gradient[t][corner(a)] *
+             tets.gradient[t][corner(b)].transpose();
   }
   for (auto k = uz(edge_spring_start_[e]); k < uz(edge_spring_start_[e + 1]); ++k) {
     const auto s = uz(edge_springs_[k]);
@@ -352,12 +358,12 @@ Mat3 TangentMatrix::rare_block(const Objective& objective, const Field& x,
   return block;
 }
 
-void TangentMatrix::assemble_cells(const Objective& objective, const Workspace& workspace) {
+void TangentMatrix::assemble_cells(const Objective& objective, const TetState& tets) {
   const Model& model = objective.model;
   const bool limited = objective.constraints != nullptr && model.has_volume_limit;
   parallel_for(model.tet_count(), [&](Index t) {
     for (std::size_t a = 0; a < 4; ++a) {
-      tet_gradient_[4 * uz(t) + a] = Float4(workspace.tet_gradient[uz(t)][a]);
+      tet_gradient_[4 * uz(t) + a] = Float4(tets.gradient[uz(t)][a]);
     }
   });
   parallel_for(model.cell_count(), [&](Index c) {
@@ -447,9 +453,9 @@ void TangentMatrix::assemble_nodes(const Objective& objective) {
 }
 
 void TangentMatrix::assemble(const Objective& objective, const Field& x, double time,
-                             const Workspace& workspace) {
-  if (objective.model.has_volume) assemble_cells(objective, workspace);
-  assemble_edges(objective, x, workspace);
+                             const TetState& tets) {
+  if (objective.model.has_volume) assemble_cells(objective, tets);
+  assemble_edges(objective, x, tets);
   assemble_joints(objective, x, time);
   assemble_nodes(objective);
 }

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "sinew/forces/workspace.h"
+#include "sinew/forces/volume.h"
 #include "sinew/model/model.h"
 #include "sinew/solver/float4.h"
 #include "sinew/solver/newton.h"
@@ -30,9 +30,8 @@ class TangentMatrix {
   explicit TangentMatrix(const Model& model);  // which entries there are
 
   // Their values at positions x and `time` for objective.model: the constructor's, or one that
-  // differs from it in stiffness only. Expects what prepare_stiffness leaves in the workspace at x.
-  void assemble(const Objective& objective, const Field& x, double time,
-                const Workspace& workspace);
+  // differs from it in stiffness only. `tets` are those at x.
+  void assemble(const Objective& objective, const Field& x, double time, const TetState& tets);
 
   // out = K u (nodes), 0 where the motion is given; u has to be 0 there. Returns u . K u.
   double times(const Field4& u, Field4& out) const;
@@ -67,10 +66,10 @@ class TangentMatrix {
   void find_cells();
   Mat3 near_block(std::size_t entry) const;
   TangentRows rows() const;
-  void assemble_edges(const Objective& objective, const Field& x, const Workspace& workspace);
-  Mat3 rare_block(const Objective& objective, const Field& x, const Workspace& workspace,
+  void assemble_edges(const Objective& objective, const Field& x, const TetState& tets);
+  Mat3 rare_block(const Objective& objective, const Field& x, const TetState& tets,
                   std::size_t edge) const;
-  void assemble_cells(const Objective& objective, const Workspace& workspace);
+  void assemble_cells(const Objective& objective, const TetState& tets);
   void assemble_joints(const Objective& objective, const Field& x, double time);
   void add_joint(std::span<const Index> nodes, std::span<const double> weights, const Mat3& block);
   void assemble_nodes(const Objective& objective);

@@ -7,7 +7,6 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
-#include "sinew/contact/explicit_contacts.h"
 #include "sinew/contact/ground.h"
 #include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/loads.h"
@@ -27,13 +26,11 @@ constexpr Index none = std::numeric_limits<Index>::max();
 constexpr double farthest = 1e9;
 
 // Moves the free nodes. Returns the first node that is not finite or has run away, or `none`.
-Index move_free_nodes(const Model& model, const Workspace& workspace, double h, State& state) {
+Index move_free_nodes(const Model& model, const std::vector<Vec3>& force, double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
   const int within = parallel_reduce(
       model.node_count(), 1,
-      [&](Range r) {
-        return kick_and_drift(model, workspace.force, kick, h, farthest, r, state) ? 1 : 0;
-      },
+      [&](Range r) { return kick_and_drift(model, force, kick, h, farthest, r, state) ? 1 : 0; },
       [](int a, int b) { return a & b; });
   if (within != 0) return none;
   for (Index i = 0; i < model.node_count(); ++i) {
@@ -44,7 +41,7 @@ Index move_free_nodes(const Model& model, const Workspace& workspace, double h, 
 }
 
 // Moves the pinned nodes along their paths; adds the work their motion does on the springs.
-void move_pins(const Model& model, const Workspace& workspace, double h, State& state) {
+void move_pins(const Model& model, const std::vector<Vec3>& force, double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
   for (const Pin& pin : model.pins) {
     if (pin.path.keys.empty()) continue;
@@ -53,7 +50,7 @@ void move_pins(const Model& model, const Workspace& workspace, double h, State& 
       const Vec3 target = pin.path.at(state.time + h, model.rest_position[k]);
       const Vec3 velocity = (target - state.position[k]) / h;
       const Vec3 mean = 0.5 * (state.half_velocity[k] + velocity);
-      state.energy.work_in -= kick * workspace.force[k].dot(mean);
+      state.energy.work_in -= kick * force[k].dot(mean);
       state.half_velocity[k] = velocity;
       state.position[k] = target;
     }
@@ -61,13 +58,12 @@ void move_pins(const Model& model, const Workspace& workspace, double h, State& 
 }
 
 // Work of the loads over the step, with v(t) = (w before + w after) / 2; called before the move.
-void add_work_of_loads(const Model& model, const Workspace& workspace, double h, State& state) {
+void add_work_of_loads(const Model& model, const std::vector<Vec3>& force, double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
-  for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& force) {
+  for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& load) {
     const auto k = uz(node);
-    const Vec3 v =
-        state.half_velocity[k] + (0.5 * kick * model.inverse_mass[k]) * workspace.force[k];
-    state.energy.work_in += kick * force.dot(v);
+    const Vec3 v = state.half_velocity[k] + (0.5 * kick * model.inverse_mass[k]) * force[k];
+    state.energy.work_in += kick * load.dot(v);
   });
 }
 
@@ -87,23 +83,22 @@ void add_work_of_obstacles(const Model& model, double h, State& state) {
 // Lets the velocities follow positions that constraints have moved, and counts what that takes. The
 // impulses work on the mean of the velocities before and after the step, as in Verlet's own
 // balance: none where a taut spring just holds.
-void follow_positions(const Model& model, const Workspace& workspace,
+void follow_positions(const Model& model, const std::vector<Vec3>& force,
                       const std::vector<Vec3>& predicted, double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
   state.energy.dissipated -= parallel_sum(model.node_count(), [&](Index i) {
     const auto k = uz(i);
     if (model.inverse_mass[k] == 0.0) return 0.0;
     const Vec3 change = (state.position[k] - predicted[k]) / h;
-    const Vec3 before =
-        state.half_velocity[k] - (kick * model.inverse_mass[k]) * workspace.force[k];
+    const Vec3 before = state.half_velocity[k] - (kick * model.inverse_mass[k]) * force[k];
     state.half_velocity[k] += change;
     return 0.5 * model.mass[k] * change.dot(before + state.half_velocity[k]);
   });
 }
 
 // Projects the limits, with the ground as a constraint among them; velocities follow.
-void enforce_limits(const Model& model, const Workspace& workspace, double h, State& state,
-                    VerletReport& report) {
+void enforce_limits(const Model& model, const std::vector<Vec3>& force, double h, State& state,
+                    StepReport& report) {
   const std::vector<Vec3> predicted = state.position;
   LimitSweep sweep{1, 1};
   while (sweep.over > 0 && report.limit_sweeps < model.limit_sweeps) {
@@ -117,25 +112,27 @@ void enforce_limits(const Model& model, const Workspace& workspace, double h, St
   report.limits_met =
       sweep.over == 0 || measure_limit_violation(model, state.position) <= model.limit_tolerance;
 
-  follow_positions(model, workspace, predicted, h, state);
+  follow_positions(model, force, predicted, h, state);
 }
 
 // Projects the limited cells back to their volume; velocities follow.
-void enforce_volume(const Model& model, double h, Workspace& workspace, State& state,
-                    VerletReport& report) {
+void enforce_volume(const Model& model, const std::vector<Vec3>& force, double h, State& state,
+                    StepReport& report) {
   const std::vector<Vec3> predicted = state.position;
-  const VolumeLimitReport volume = enforce_volume_limit(model, state.position, workspace);
-  report.volume_met = volume.met;
-  if (volume.projections > 0) follow_positions(model, workspace, predicted, h, state);
+  const VolumeLimitReport volume = enforce_volume_limit(model, state.position);
+  report.limits_met = report.limits_met && volume.met;
+  if (volume.projections > 0) follow_positions(model, force, predicted, h, state);
 }
 
-// The spring at the node that pulled hardest for its stiffness, or that is itself not finite.
-Index suspect_spring(const Model& model, const Workspace& workspace, Index node) {
+// The spring at the node that pulls hardest, or that is itself not finite.
+Index suspect_spring(const Model& model, const State& state, Index node) {
+  std::vector<Vec3> force;
+  compute_spring_forces(model, state, force);
   Index suspect = -1;
   double worst = -1.0;
   for (Index k = model.spring_start[uz(node)]; k < model.spring_start[uz(node) + 1]; ++k) {
     const Index s = model.node_spring[uz(k)] >> 1;
-    const double pull = workspace.spring_force[uz(s)].norm();
+    const double pull = force[uz(s)].norm();
     if (!(pull <= worst)) {
       suspect = s;
       worst = pull;
@@ -144,11 +141,9 @@ Index suspect_spring(const Model& model, const Workspace& workspace, Index node)
   return suspect;
 }
 
-[[noreturn]] void report_divergence(const Model& model, const State& state, Index node,
-                                    Workspace& workspace) {
+[[noreturn]] void report_divergence(const Model& model, const State& state, Index node) {
   std::string spring;
-  if (workspace.packed) compute_spring_forces(model, state, workspace);
-  const Index s = suspect_spring(model, workspace, node);
+  const Index s = suspect_spring(model, state, node);
   if (s >= 0) {
     spring = fmt::format("; its spring {} ({} to {}, k = {:.4g} N/m, l0 = {:.4g} m) pulled hardest",
                          s, model.node_name(model.springs[uz(s)][0]),
@@ -165,39 +160,48 @@ Index suspect_spring(const Model& model, const Workspace& workspace, Index node)
 
 }  // namespace
 
-VerletReport verlet_step(const Model& model, const Controls& controls, double h, State& state,
-                         Workspace& workspace) {
-  VerletReport report;
-  state.energy.dissipated += h * compute_forces(model, controls, state, workspace);
+VerletStepper::VerletStepper(const Model& model, Precision precision)
+    : model_(model), forces_(model, precision) {
+  if (ExplicitContacts::any(model)) contacts_.emplace(model);
+}
+
+StepReport VerletStepper::step(double h, const Controls& controls, State& state) {
+  StepReport report;
+  const NodalForces& found = forces_.evaluate(controls, state);
+  state.energy.dissipated += h * found.heat;
+  const std::vector<Index> tangled = find_tangled(model_, found.low_tets);
+  report.recovered = static_cast<int>(tangled.size());
   double energy = 0.0;
-  report.righted = find_tangled(model, workspace);
-  if (report.righted > 0) {
-    energy = measure_energies(model, controls, state, workspace).total();
-    right_tangled_bodies(model, state, h, workspace);
+  std::vector<Vec3> recovering;
+  if (!tangled.empty()) {
+    energy = measure_energies(model_, controls, state, found.force).total();
+    recovering = recovery_forces(model_, state, h, tangled, found.force);
   }
-  const bool contacts = ExplicitContacts::any(model);
-  if (contacts) {
-    if (!workspace.contacts) workspace.contacts = std::make_shared<ExplicitContacts>(model);
-    workspace.before = state.position;
-  }
-  add_work_of_loads(model, workspace, h, state);
-  add_work_of_obstacles(model, h, state);
-  const Index broken = move_free_nodes(model, workspace, h, state);
-  move_pins(model, workspace, h, state);
+  const std::vector<Vec3>& force = tangled.empty() ? found.force : recovering;
+  if (contacts_) before_ = state.position;
+  add_work_of_loads(model_, force, h, state);
+  add_work_of_obstacles(model_, h, state);
+  const Index broken = move_free_nodes(model_, force, h, state);
+  move_pins(model_, force, h, state);
   if (broken == none) {
-    if (contacts) {
-      report.contact = workspace.contacts->step(workspace.before, workspace.force, h, state);
+    if (contacts_) {
+      const ContactReport contact = contacts_->step(before_, force, h, state);
+      report.contacts = contact.contacts;
+      report.deepest = contact.deepest;
+      report.friction = contact.friction;
     }
-    if (!model.limited.empty()) enforce_limits(model, workspace, h, state, report);
-    if (model.has_volume_limit) enforce_volume(model, h, workspace, state, report);
+    if (!model_.limited.empty()) enforce_limits(model_, force, h, state, report);
+    if (model_.has_volume_limit) enforce_volume(model_, force, h, state, report);
   }
   state.last_step = h;
   state.time += h;
   ++state.step;
-  if (report.righted > 0) {
-    state.energy.work_in += measure_energies(model, controls, state, workspace).total() - energy;
+  if (!tangled.empty()) {
+    const NodalForces& after = forces_.evaluate(controls, state);
+    state.energy.work_in += measure_energies(model_, controls, state, after.force).total() - energy;
   }
-  if (broken != none) report_divergence(model, state, broken, workspace);
+  guard_frequency2_ = sinew::guard_frequency2(model_, found.low_tets);
+  if (broken != none) report_divergence(model_, state, broken);
   return report;
 }
 

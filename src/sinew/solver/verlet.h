@@ -1,35 +1,52 @@
 // Position Verlet: one explicit step. docs/methods/verlet.md.
 #pragma once
 
-#include "sinew/contact/contact_solver.h"
-#include "sinew/forces/workspace.h"
+#include <optional>
+#include <vector>
+
+#include "sinew/contact/explicit_contacts.h"
+#include "sinew/forces/force_evaluator.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
+#include "sinew/solver/step_report.h"
 
 namespace sinew {
 
-struct VerletReport {
-  ContactReport contact;
-  int limit_sweeps = 0;    // sweeps that moved a spring
-  bool limits_met = true;  // false: springs still over their limit after the last sweep
-  bool volume_met = true;  // false: cells still over their volume limit after the projections
-  int righted = 0;         // tangled bodies that were led back to their rest shape
-};
+class VerletStepper {
+ public:
+  // The model has to outlive the object.
+  VerletStepper(const Model& model, Precision precision);
 
-// Advances the state by h [s] > 0.
-//
-//   x(t+h) = 2 x(t) - x(t-h) + a(t) h^2,   v(t) = (x(t+h) - x(t-h)) / 2h
-//
-// kept as positions and half-step velocities w = (x(t) - x(t-h)) / h, which is the same to the
-// letter and loses fewer digits:  w += a (h_last + h)/2,  x += h w.  The first step, with
-// h_last = 0 and w = v0, is the start x(-h) = x0 - h v0 + a0 h^2/2. Dashpots and drag see w, the
-// half-step velocity. Tangled bodies are righted (forces/inversion_recovery.h); what that changes
-// the energy by counts as work put in. After the move come the ground, then the limits; velocities
-// follow the corrected positions. A step may differ in length from the last one.
-//
-// Throws Error(diverged) when a position is not finite any more or beyond 1e9 m, and names body,
-// node, spring and time; the state is then the broken one.
-VerletReport verlet_step(const Model& model, const Controls& controls, double h, State& state,
-                         Workspace& workspace);
+  // Advances the state by h [s] > 0.
+  //
+  //   x(t+h) = 2 x(t) - x(t-h) + a(t) h^2,   v(t) = (x(t+h) - x(t-h)) / 2h
+  //
+  // kept as positions and half-step velocities w = (x(t) - x(t-h)) / h, which is the same to the
+  // letter and loses fewer digits:  w += a (h_last + h)/2,  x += h w.  The first step, with
+  // h_last = 0 and w = v0, is the start x(-h) = x0 - h v0 + a0 h^2/2. Dashpots and drag see w, the
+  // half-step velocity. Tangled bodies are righted (forces/inversion_recovery.h); what that changes
+  // the energy by counts as work put in. After the move come the ground, then the limits;
+  // velocities follow the corrected positions. A step may differ in length from the last one.
+  //
+  // Throws Error(diverged) when a position is not finite any more or beyond 1e9 m, and names body,
+  // node, spring and time; the state is then the broken one.
+  //
+  // StepReport::limits_met is false where springs are over their limit after the last sweep, or
+  // cells over their volume limit after the projections; stable_step is left open.
+  StepReport step(double h, const Controls& controls, State& state);
+
+  // Square of the highest angular frequency that the guard of tets near inversion adds at the last
+  // forces [1/s2] (forces/volume.h); 0 before the first step.
+  double guard_frequency2() const { return guard_frequency2_; }
+
+  ForceEvaluator& forces() { return forces_; }
+
+ private:
+  const Model& model_;
+  ForceEvaluator forces_;
+  std::optional<ExplicitContacts> contacts_;  // of a model in which things can touch
+  std::vector<Vec3> before_;                  // positions before the move [m] (nodes)
+  double guard_frequency2_ = 0.0;
+};
 
 }  // namespace sinew

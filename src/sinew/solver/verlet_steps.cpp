@@ -2,8 +2,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "sinew/forces/packed.h"
-#include "sinew/forces/volume.h"
 #include "sinew/solver/stable_step.h"
 #include "sinew/solver/stepper.h"
 #include "sinew/solver/verlet.h"
@@ -40,14 +38,10 @@ bool model_is_moved(const Model& model, double from, double to) {
 class VerletSteps : public Stepper {
  public:
   VerletSteps(const Model& model, const StepperOptions& options)
-      : model_(model), workspace_(model) {
-    if (options.precision == Precision::single) {
-      workspace_.packed = std::make_shared<PackedForces>(model);
-    }
-  }
+      : model_(model), stepper_(model, options.precision) {}
 
   FirstStep begin(const Controls& controls, const State& state, StepMemory& memory) override {
-    StableStep stable = find_stable_step(model_, controls, state.position, workspace_);
+    StableStep stable = find_stable_step(model_, controls, state.position, forces());
     memory = {stable.step, std::move(stable.mode), first_watch, first_watch};
     return {stable.step, no_limit,
             "the stiffest spring is " + describe_spring(model_, stable.stiffest)};
@@ -61,27 +55,17 @@ class VerletSteps : public Stepper {
 
   StepReport step(double h, const Controls& controls, const Interrupt&, State& state,
                   StepMemory& memory) override {
-    const VerletReport step = verlet_step(model_, controls, h, state, workspace_);
+    StepReport report = stepper_.step(h, controls, state);
     --memory.steps_to_watch;
-    StepReport report;
-    report.contacts = step.contact.contacts;
-    report.deepest = step.contact.deepest;
-    report.friction = step.contact.friction;
-    report.limit_sweeps = step.limit_sweeps;
-    report.limits_met = step.limits_met && step.volume_met;
-    report.recovered = step.righted;
-    stepped_ = true;
-    if (model_.has_volume) report.stable_step = with_guard(memory.stable_step);
+    report.stable_step = with_guard(memory.stable_step);
     return report;
   }
 
   double stable_step(const StepMemory& memory) const override {
-    const bool guarded = model_.has_volume && stepped_;
-    return guarded ? std::min(memory.stable_step, with_guard(memory.stable_step))
-                   : memory.stable_step;
+    return std::min(memory.stable_step, with_guard(memory.stable_step));
   }
 
-  Workspace& workspace() override { return workspace_; }
+  ForceEvaluator& forces() override { return stepper_.forces(); }
 
  private:
   std::optional<double> estimate(double h, const Controls& controls, const State& state,
@@ -90,7 +74,7 @@ class VerletSteps : public Stepper {
     if (memory.stiff_mode.empty()) return std::nullopt;
     const double before = memory.stable_step;
     memory.stable_step =
-        watch_stable_step(model_, controls, state.position, h, memory.stiff_mode, workspace_);
+        watch_stable_step(model_, controls, state.position, h, memory.stiff_mode, forces());
     const bool stirred =
         memory.stable_step < calm * before ||
         model_is_moved(model_, state.time, state.time + static_cast<double>(last_watch) * h);
@@ -102,15 +86,14 @@ class VerletSteps : public Stepper {
   // The guard of tets about to turn over is stiffer than all the rest and acts at once: the stable
   // step with it; infinity where it does not act.
   double with_guard(double stable) const {
-    const double omega2 = guard_frequency2(model_, workspace_);
+    const double omega2 = stepper_.guard_frequency2();
     if (omega2 == 0.0) return no_limit;
     const double omega = 2.0 / stable;
     return 2.0 / std::sqrt(omega * omega + omega2);
   }
 
   const Model& model_;
-  Workspace workspace_;
-  bool stepped_ = false;  // the workspace holds the forces of a step
+  VerletStepper stepper_;
 };
 
 }  // namespace

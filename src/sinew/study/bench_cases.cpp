@@ -41,21 +41,16 @@ constexpr int steps_before = 20;   // that a state of the kernels and its hash c
 constexpr double residual = 1e-3;  // of the conjugate gradients
 constexpr double frame_seconds = 1.0 / 60.0;
 
-std::shared_ptr<PackedForces> packed_of(const Model& model, Precision precision) {
-  return precision == Precision::single ? std::make_shared<PackedForces>(model) : nullptr;
-}
-
 // A body in motion: forces differ from node to node, as in a run.
-State moved(const Model& model, double h, Workspace& workspace) {
+State moved(const Model& model, double h, VerletStepper& stepper) {
   State s = initial_state(model);
-  for (int i = 0; i < steps_before; ++i)
-    verlet_step(model, initial_controls(model), h, s, workspace);
+  for (int i = 0; i < steps_before; ++i) stepper.step(h, initial_controls(model), s);
   return s;
 }
 
-double half_stable_step(const Model& model, Workspace& workspace) {
-  return 0.5 *
-         find_stable_step(model, initial_controls(model), model.rest_position, workspace).step;
+double half_stable_step(const Model& model) {
+  ForceEvaluator forces(model, Precision::double_);
+  return 0.5 * find_stable_step(model, initial_controls(model), model.rest_position, forces).step;
 }
 
 bool is_explicit(Kernel k) {
@@ -201,10 +196,9 @@ std::optional<BenchRow> BenchSubject::run(const BenchCase& what, const TimerOpti
 std::optional<Timing> BenchSubject::step(const BenchCase& what, const TimerOptions& options,
                                          BenchRow& row) {
   const Model& m = *model_;
-  Workspace workspace(m);
-  const double h = half_stable_step(m, workspace);
-  workspace.packed = packed_of(m, what.precision);
-  const State start = moved(m, h, workspace);
+  const double h = half_stable_step(m);
+  VerletStepper stepper(m, what.precision);
+  const State start = moved(m, h, stepper);
   row.hash = hex(start.hash());
   row.work = step_work(m, what.precision);
   row.steps = 1;
@@ -213,30 +207,31 @@ std::optional<Timing> BenchSubject::step(const BenchCase& what, const TimerOptio
   longer.shortest *= 10.0;  // so that the steps' own caches are warm after the start is restored
   State s;
   return measure(
-      longer, [&] { s = start; }, [&] { verlet_step(m, controls, h, s, workspace); });
+      longer, [&] { s = start; }, [&] { stepper.step(h, controls, s); });
 }
 
 std::optional<Timing> BenchSubject::forces(const BenchCase& what, const TimerOptions& options,
                                            BenchRow& row) {
   const Model& m = *model_;
-  Workspace workspace(m);
-  const double h = half_stable_step(m, workspace);
-  const auto packed = packed_of(m, what.precision);
-  workspace.packed = packed;
-  const State s = moved(m, h, workspace);
+  VerletStepper stepper(m, what.precision);
+  const State s = moved(m, half_stable_step(m), stepper);
+  PackedForces packed(m);
+  TetState tets;
+  std::vector<Vec3> force(s.position.size());
   std::function<void()> call;
   if (what.kernel == Kernel::gather) {
     row.work = gather_work(m, what.precision);
-    call = [&] { packed->gather(workspace.force); };
+    packed.compute(m, s);
+    call = [&] { packed.gather(force); };
   } else if (what.kernel == Kernel::volumes) {
     row.work = volumes_work(m);
-    call = [&] { compute_volume_pressures(m, s.position, workspace); };
+    call = [&] { tets = compute_tet_state(m, s.position, std::move(tets)); };
   } else if (what.precision == Precision::single) {
     row.work = forces_work(m, what.precision);
-    call = [&] { packed->compute(m, s); };
+    call = [&] { packed.compute(m, s); };
   } else {
     row.work = springs_work(m);
-    call = [&] { compute_spring_forces(m, s, workspace); };
+    call = [&] { compute_spring_forces(m, s, force); };
   }
   return measure(
       options, [] {}, call);
@@ -282,16 +277,15 @@ std::optional<Timing> BenchSubject::frame(const BenchCase& what, const TimerOpti
 std::optional<Timing> BenchSubject::linear(const BenchCase& what, const TimerOptions& options,
                                            BenchRow& row) {
   const Model& m = *model_;
-  Workspace workspace(m);
   const Field& x = m.rest_position;
+  const TetState tets = compute_tet_state(m, x);
   const Controls controls = initial_controls(m);
   const Objective objective{
       .model = m, .controls = controls, .inertia = 1.0 / (frame_seconds * frame_seconds)};
-  prepare_stiffness(m, x, workspace);
   Field load = outer_forces(m, controls, initial_state(m));
   if (what.kernel == Kernel::iteration) {
     LinearSolver solver(m);
-    solver.assemble(objective, x, 0.0, workspace);
+    solver.assemble(objective, x, 0.0, tets);
     Field p;
     const auto solve = [&] { row.products = solver.solve(load, residual, 1000, {}, p); };
     const auto time = measure(
@@ -302,10 +296,10 @@ std::optional<Timing> BenchSubject::linear(const BenchCase& what, const TimerOpt
     return time;
   }
   TangentMatrix matrix(m);
-  matrix.assemble(objective, x, 0.0, workspace);
+  matrix.assemble(objective, x, 0.0, tets);
   if (what.kernel == Kernel::assembly) {
     return measure(
-        options, [] {}, [&] { matrix.assemble(objective, x, 0.0, workspace); });
+        options, [] {}, [&] { matrix.assemble(objective, x, 0.0, tets); });
   }
   Field4 u(load.size()), out(load.size());
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = Float4(load[i]);

@@ -20,7 +20,7 @@ Work operator+(const Work& a, const Work& b);
 Work operator*(double times, const Work& once);  // the same arrays, this many times
 
 // The parts of a step of Verlet; the counts are those of the arrays in forces/packed.h (single),
-// model.h and workspace.h (double).
+// model.h and volume.h (double).
 Work forces_work(const Model& model, Precision precision);  // up to the sums at the nodes
 Work gather_work(const Model& model, Precision precision);  // those sums, and the network's rows
 Work update_work(const Model& model);                       // the rest: gravity, drag, the move

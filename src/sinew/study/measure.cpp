@@ -68,8 +68,7 @@ bool Experiment::run(const std::atomic<bool>* stop, const std::function<void(dou
     if (on_share) on_share(run_.state.time / scene_.duration);
     if (stop != nullptr && stop->load() && run_.frame < stepping.frame_count()) return false;
   }
-  compute_forces(model_, controls, run_.state, stepping.workspace());
-  force_ = stepping.workspace().force;
+  force_ = stepping.forces().evaluate(controls, run_.state).force;
   seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return true;
 }
@@ -199,8 +198,7 @@ double Experiment::measure(const Quantity& q) {
     case Kind::obstacle: {
       const Obstacle& obstacle = named(model_.obstacles, q, "obstacle");
       const auto o = static_cast<std::size_t>(&obstacle - model_.obstacles.data());
-      Workspace workspace(model_);
-      return read_obstacles(model_, run_.state, workspace)[o].force[axis];
+      return read_obstacles(model_, run_.state)[o].force[axis];
     }
     case Kind::contact_time:
       return contact_time_;

@@ -35,7 +35,7 @@ struct Trial {
   Index nodes = 0, tets = 0;
   Index inverted_tets = 0;
   double volume_ratio = 1.0;
-  double residual = 0.0;  // static, see StaticReport
+  double residual = 0.0;  // static, see StepReport
   double seconds = 0.0;
   std::string failure;  // reason for a missing result; empty: there is one
   bool holds() const;   // false: the network law failed, or left a tet inverted

@@ -1,0 +1,95 @@
+// The forces of all terms at a state. The material's are computed by one of two implementations,
+// chosen at construction: plain loops in double precision, or packed ones in single precision
+// (forces/packed.h). The tests compare both with the terms of forces/material_terms.h.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "sinew/forces/packed.h"
+#include "sinew/forces/packed_stiffness.h"
+#include "sinew/forces/precision.h"
+#include "sinew/forces/stiffness.h"
+#include "sinew/forces/volume.h"
+#include "sinew/model/controls.h"
+#include "sinew/model/state.h"
+
+namespace sinew {
+
+// What pulls the nodes at a state, and what evaluating it showed of the tets.
+struct NodalForces {
+  std::vector<Vec3> force;       // in all on each node [N] (nodes)
+  double heat = 0.0;             // power that dashpots, viscosity and drag turn into heat [W]
+  std::vector<LowTet> low_tets;  // tets near inversion
+};
+
+// Springs, dashpots, network, volume, gravity and drag in double precision.
+class PlainMaterial {
+ public:
+  explicit PlainMaterial(const Model&) {}
+
+  // Sets force and low_tets of `found`, and adds the power of dashpots and drag to its heat.
+  void evaluate(const Model& model, const Vec3& gravity, const State& state, NodalForces& found);
+  // The tets at x; taken from evaluate() if its last positions were these.
+  const TetState& tets(const Model& model, std::span<const Vec3> x);
+
+ private:
+  std::vector<Vec3> spring_force_;  // on end 0 of each spring [N] (springs)
+  TetState tets_;
+  std::vector<Vec3> tets_at_;  // the positions of tets_ [m] (nodes); empty: none yet
+  std::vector<double> power_;  // of the drag [W] (blocks)
+};
+
+// The same in single precision.
+class PackedMaterial {
+ public:
+  explicit PackedMaterial(const Model& model) : packed_(model) {}
+
+  void evaluate(const Model& model, const Vec3& gravity, const State& state, NodalForces& found);
+  const TetState& tets(const Model& model, std::span<const Vec3> x);
+  PackedForces& packed() { return packed_; }
+
+ private:
+  PackedForces packed_;
+  TetState tets_;
+  std::vector<double> power_;  // of the drag [W] (patches)
+};
+
+// Owns the arrays of all results, so that an evaluation allocates nothing. A reference that it
+// returns is good until the next call of the same function. What a function returns depends on its
+// arguments alone, never on earlier calls.
+class ForceEvaluator {
+ public:
+  // The model has to outlive the object.
+  ForceEvaluator(const Model& model, Precision precision);
+
+  // Springs, dashpots, network, volume, viscosity, gravity, drag, and all `Terms` at state.time.
+  // Pinned nodes and anchors get only what the material pulls.
+  const NodalForces& evaluate(const Controls& controls, const State& state);
+
+  // The tets at positions x, in double precision. It costs nothing in double precision if the last
+  // evaluate() was there.
+  const TetState& tets(std::span<const Vec3> x);
+  // Their volumes alone [m3] (tets).
+  std::span<const double> tet_volumes(std::span<const Vec3> x);
+
+  // Products with the tangent in double precision.
+  TangentProduct& products() { return products_; }
+  // Products with what stiffens, by the packed forces; none in double precision, or where springs
+  // have a stiffness and are not only dashpots: differences of forces do not tell what stiffens.
+  // `controls` and `x` have to outlive them.
+  std::optional<PackedStiffness> packed_products(const Controls& controls,
+                                                 const std::vector<Vec3>& x);
+
+ private:
+  const Model& model_;
+  std::variant<PlainMaterial, PackedMaterial> material_;
+  NodalForces forces_;
+  std::vector<Vec3> viscous_force_;  // on a node of a viscous cell [N] (slots)
+  std::vector<double> tet_volume_;   // [m3] (tets)
+  TangentProduct products_;
+};
+
+}  // namespace sinew

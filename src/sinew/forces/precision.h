@@ -1,0 +1,16 @@
+// The precision of the material's forces, with the words that scenes have for it.
+#pragma once
+
+#include <array>
+
+#include "sinew/base/words.h"
+
+namespace sinew {
+
+// Of the forces of tets and springs.
+enum class Precision { single, double_ };
+constexpr std::array<Word<Precision>, 2> words_of(Precision) {
+  return {{{Precision::single, "single"}, {Precision::double_, "double"}}};
+}
+
+}  // namespace sinew
