@@ -21,8 +21,8 @@ class Recorder {
   Recorder(const Scene& scene, const Model& model, std::filesystem::path folder,
            const RunState& run);
 
-  // Writes the frame that the state now stands at and appends its time to run.frame_times.
-  void record(const Controls& controls, RunState& run, Workspace& workspace);
+  // Writes the frame that the state now stands at, the last of run.frame_times.
+  void record(const Controls& controls, const RunState& run, Workspace& workspace);
 
  private:
   void write_collection(const RunState& run) const;

@@ -11,6 +11,7 @@
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/terms.h"
 #include "sinew/scene/scene.h"
+#include "sinew/sim/readings.h"
 #include "sinew/sim/run_state.h"
 
 namespace sinew {
@@ -21,12 +22,6 @@ constexpr std::array<Word<RunStatus>, 3> words_of(RunStatus) {
            {RunStatus::interrupted, "interrupted"},
            {RunStatus::diverged, "diverged"}}};
 }
-
-struct ProbeReading {
-  std::string name;
-  Vec3 position = Vec3::Zero();      // mean of its nodes [m]
-  Vec3 displacement = Vec3::Zero();  // of that mean from the rest position [m]
-};
 
 struct BodySummary {
   std::string name;
@@ -81,12 +76,6 @@ struct Summary : RunCounters {
 
   double realtime_factor() const { return wall_seconds > 0.0 ? sim_seconds / wall_seconds : 0.0; }
 };
-
-// Tets with v_t < 0 at positions x.
-std::int64_t count_inverted(const Model& model, const std::vector<Vec3>& x);
-
-// The probes' means at positions x.
-std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3>& x);
 
 // Measures the run as it stands. `meshes`: where each body's mesh came from.
 Summary summarize(const Scene& scene, const Model& model, const Controls& controls,

@@ -5,15 +5,11 @@
 #include "sinew/contact/explicit_contacts.h"
 
 namespace sinew {
-namespace {
-
-double longest_edge(const Model& model) {
+double touching_distance(const Model& model) {
   double longest = 0.0;
   for (const double l : model.skin.longest_edge) longest = std::max(longest, l);
-  return longest;
+  return 1e-3 * longest;
 }
-
-}  // namespace
 
 std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
                                             Workspace& workspace) {
@@ -27,7 +23,7 @@ std::vector<ObstacleReading> read_obstacles(const Model& model, const State& sta
   std::vector<Contact> contacts;
   if (!workspace.contacts) workspace.contacts = std::make_shared<ExplicitContacts>(model);
   workspace.contacts->finder().find(state.position, state.position, state.time, state.time,
-                                    1e-3 * longest_edge(model), contacts);
+                                    touching_distance(model), contacts);
   for (const Contact& c : contacts) {
     const Index obstacle = c.id.obstacle();
     if (obstacle < 0) continue;

@@ -9,9 +9,12 @@
 
 namespace sinew {
 
+// Places nearer than this to a hard obstacle touch it: a thousandth of the longest edge of the
+// bodies' surfaces [m].
+double touching_distance(const Model& model);
+
 // By obstacle. Soft: as the positions are (forces/obstacles.h). Hard: the force is the mean over
-// the last step, depth that of the deepest place inside, and places count as touching that are
-// inside or nearer than a thousandth of the longest edge of the bodies' surfaces.
+// the last step, depth that of the deepest place inside, and places count that touch.
 std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
                                             Workspace& workspace);
 
