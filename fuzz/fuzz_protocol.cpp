@@ -10,7 +10,7 @@
 #include <variant>
 
 #include "sinew/base/error.h"
-#include "sinew/live/simulation.h"
+#include "sinew/live/session.h"
 #include "sinew/server/guard.h"
 #include "sinew/server/protocol.h"
 
@@ -34,13 +34,13 @@ bool takes_many_steps(const live::Command& command) {
   return advance != nullptr && advance->frame;
 }
 
-void hear(std::string_view message, std::unique_ptr<live::Simulation>& simulation) {
+void hear(std::string_view message, std::unique_ptr<live::Session>& simulation) {
   try {
     const server::Request request = server::parse_request(message);
     const auto* command = std::get_if<live::Command>(&request);
     if (command == nullptr || takes_many_steps(*command)) return;
     if (!simulation) {
-      simulation = std::make_unique<live::Simulation>(parse_scene(scene_text, "fuzz.toml", "."));
+      simulation = std::make_unique<live::Session>(parse_scene(scene_text, "fuzz.toml", "."));
     }
     simulation->apply(*command);
   } catch (const Error& error) {
@@ -60,7 +60,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   server::origin_allowed(text, "localhost:8650");
   server::token_allowed(door, text);
   server::query_value(text, "name");
-  std::unique_ptr<live::Simulation> simulation;
+  std::unique_ptr<live::Session> simulation;
   for (int messages = 0; messages < 8 && !text.empty(); ++messages) {
     const std::size_t end = std::min(text.find('\n'), text.size());
     hear(text.substr(0, end), simulation);

@@ -161,9 +161,10 @@ class SINEW_API Simulation {
   std::span<const Point> rest_positions() const;  // [m] (nodes)
   // The way of the last step over its length [m/s] (nodes).
   std::span<const Point> velocities() const;
-  // At the positions as they are [N] (nodes): of the material, gravity, loads, soft obstacles and
-  // grabs; on pinned nodes of the material alone; not of contacts. Computed by the first call after
-  // a change, which costs about as much as a step.
+  // The force on each node [N] (nodes). At the positions as they are: of the material, and on free
+  // nodes of gravity, loads, soft obstacles and grabs. Of the last step, 0 before it and after a
+  // change that builds the model anew: of contacts and of the ground. Not of limits, ropes and
+  // rods. Computed by the first call after a change, which costs about as much as a step.
   std::span<const Point> forces() const;
   std::span<const double> masses() const;        // [kg] (nodes)
   std::span<const Tet> tets() const;             // node ids (tets)
@@ -207,8 +208,8 @@ class SINEW_API Simulation {
   // To `motion` since the start, as an obstacle is moved.
   void move(PinHandle pin, const RigidMotion& motion);
   RigidMotion motion(PinHandle pin) const;
-  // What its nodes load the pin with: the pull of the material, their weight, and contacts; the
-  // torque about `about` [m].
+  // What its nodes load the pin with: their forces() and their weight; the torque about `about`
+  // [m].
   Wrench wrench(PinHandle pin, const Point& about) const;
 
   // ---- grabs: springs that pull a patch of tissue ----

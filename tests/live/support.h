@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "sinew/live/simulation.h"
+#include "sinew/live/session.h"
 #include "sinew/scene/scene.h"
 
 namespace sinew::test {
@@ -26,11 +26,11 @@ select = { side = "+y" }
 
 inline constexpr Clock::time_point never = Clock::time_point::max();
 
-inline void frames(live::Simulation& s, int count) {
+inline void frames(live::Session& s, int count) {
   for (int i = 0; i < count; ++i) s.advance(never);
 }
 
-inline bool finite(const live::Simulation& s) {
+inline bool finite(const live::Session& s) {
   for (const Vec3& x : s.state().position) {
     if (!x.allFinite()) return false;
   }

@@ -7,7 +7,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/random.h"
-#include "sinew/live/simulation.h"
+#include "sinew/live/session.h"
 #include "tests/live/support.h"
 
 namespace sinew::server {
@@ -150,7 +150,7 @@ TEST(Protocol, DamagedMessagesNeverDoAnythingButFail) {
 }
 
 TEST(Protocol, BinaryMessagesAreLaidOutAsWritten) {
-  live::Simulation s(test::hanging_box());
+  live::Session s(test::hanging_box());
   const live::Topology& t = *s.topology();
   const std::string topology = encode_topology(t);
   EXPECT_EQ(topology.substr(0, 4), "SNVW");
@@ -192,7 +192,7 @@ TEST(Protocol, BinaryMessagesAreLaidOutAsWritten) {
 }
 
 TEST(Protocol, TextsAreJsonWhateverTheyHold) {
-  live::Simulation s(test::hanging_box());
+  live::Session s(test::hanging_box());
   live::Status status = s.status();
   status.error = "broken \xff\xfe text \"quoted\"";
   status.stable_step = no_limit;

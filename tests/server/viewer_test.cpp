@@ -7,7 +7,7 @@
 namespace sinew::server {
 namespace {
 
-live::Snapshot snapshot_of(live::Simulation& s) {
+live::Snapshot snapshot_of(live::Session& s) {
   return {s.topology(), s.parameters(), std::make_shared<live::Status>(s.status()),
           std::make_shared<live::Frame>(s.frame())};
 }
@@ -20,7 +20,7 @@ std::string kind(const std::optional<Outgoing>& out) {
 }
 
 TEST(Viewer, DescribesTheSceneBeforeItsFrames) {
-  live::Simulation s(test::hanging_box());
+  live::Session s(test::hanging_box());
   const live::Snapshot now = snapshot_of(s);
   Viewer viewer("1", false);
   viewer.note(role_text(true, 1, "t"));
@@ -31,7 +31,7 @@ TEST(Viewer, DescribesTheSceneBeforeItsFrames) {
 }
 
 TEST(Viewer, OneThatFallsBehindGetsTheNewestFrameAndNoQueue) {
-  live::Simulation s(test::hanging_box());
+  live::Session s(test::hanging_box());
   live::Snapshot now = snapshot_of(s);
   Viewer viewer("1", false);
   while (viewer.next(now)) {
@@ -49,7 +49,7 @@ TEST(Viewer, OneThatFallsBehindGetsTheNewestFrameAndNoQueue) {
 }
 
 TEST(Viewer, AnotherSceneIsDescribedAnew) {
-  live::Simulation s(test::hanging_box());
+  live::Session s(test::hanging_box());
   live::Snapshot now = snapshot_of(s);
   Viewer viewer("1", false);
   while (viewer.next(now)) {
@@ -61,7 +61,7 @@ TEST(Viewer, AnotherSceneIsDescribedAnew) {
 }
 
 TEST(Viewer, NotesAreBoundedAndSoIsSpeech) {
-  live::Simulation s(test::hanging_box());
+  live::Session s(test::hanging_box());
   const live::Snapshot now = snapshot_of(s);
   Viewer viewer("1", false);
   for (int i = 0; i < 1000; ++i) viewer.note(error_text(std::to_string(i)));

@@ -201,6 +201,36 @@ TEST(Simulation, APlaneBearsTheWeight) {
   EXPECT_NEAR(w.torque[2], 0.0, 0.01 * weight);
 }
 
+// Where a body rests, what bears it and its weight cancel.
+TEST(Simulation, ForcesOfContactsAndOfTheGroundAreAmongThoseOfTheNodes) {
+  for (const bool ground : {false, true})
+    for (const char* stepper : {"verlet", "implicit"}) {
+      SceneBuilder scene;
+      scene.set_stepping({.stepper = stepper});
+      scene.add_body({.name = "box",
+                      .shape = "box",
+                      .cells = {{2, 2, 2}},
+                      .size = {{0.1, 0.1, 0.1}},
+                      .position = {{0.05, 0.05, 0.05}},
+                      .material = {.young = 2e4, .drag = 10.0}});
+      if (ground) {
+        scene.set_ground({.point = {{0.0, 0.0, 0.0}}});
+      } else {
+        scene.add_obstacle({.name = "table", .shape = "plane", .center = {{0.0, 0.0, 0.0}}});
+      }
+      Simulation s(scene);
+      s.advance(2.0);
+      const double weight = 9.81 * total_mass(s);
+      double sum = 0.0, down = 0.0;
+      for (const Point& f : s.forces()) {
+        sum += f[1];
+        down = std::min(down, f[1]);
+      }
+      EXPECT_NEAR(sum, 0.0, 0.03 * weight) << stepper << ground;
+      EXPECT_GT(down, -0.1 * weight) << stepper << ground;
+    }
+}
+
 TEST(Simulation, APinIsMoved) {
   Simulation s(standing_box());
   const PinHandle floor = s.pin("floor");

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "sinew/base/clock.h"
 #include "sinew/base/error.h"
 #include "sinew/base/text.h"
 #include "sinew/forces/terms.h"
@@ -58,14 +58,13 @@ Model free_body(const BodySpec& body) {
 
 // Median wall time of a step of the body at rest [s].
 double time_of_step(const Model& model, double h) {
-  using Clock = std::chrono::steady_clock;
   VerletStepper stepper(model, Precision::double_);
   State state = initial_state(model);
   std::vector<double> times;
   for (int k = 0; k < 25; ++k) {
     const Clock::time_point start = Clock::now();
     stepper.step(h, initial_controls(model), state);
-    times.push_back(std::chrono::duration<double>(Clock::now() - start).count());
+    times.push_back(seconds_since(start));
   }
   std::nth_element(times.begin(), times.begin() + 12, times.end());
   return times[12];

@@ -22,17 +22,19 @@ double largest_modulus(const Model& model) {
   return most == model.tet_modulus.end() ? 0.0 : 3.0 * *most;
 }
 
-double energy_of_obstacles(const Model& model, const State& state) {
-  return ObstacleTerm::energy({model, Controls{}, state.position, state.time});
+const Obstacle& obstacle_of(const sim::World& world, ObstacleHandle tool) {
+  return world.model().obstacles[world.index_of(tool)];
 }
 
 }  // namespace
 
 // A step is stable when no node is pressed harder than what the model's stiffest mode allows.
-double Ball::pressure(const Model& model) const {
+double Ball::pressure(const sim::World& world) const {
+  const Model& model = world.model();
+  const double stable_step = world.run().memory.stable_step;
   double k = hardness * largest_modulus(model) / wished_radius_;
-  if (!(stable_step_ < no_limit)) return k;
-  const double omega = 2.0 / stable_step_;
+  if (!(stable_step < no_limit)) return k;
+  const double omega = 2.0 / stable_step;
   for (std::size_t i = 0; i < model.surface_share.size(); ++i) {
     if (model.surface_share[i] == 0.0 || model.inverse_mass[i] == 0.0) continue;
     k = std::min(k, stable_ball_share * omega * omega * model.mass[i] / model.surface_share[i]);
@@ -40,69 +42,53 @@ double Ball::pressure(const Model& model) const {
   return k;
 }
 
-// Writes the obstacle anew. What that changes in its energy is work of the hand that holds it.
-void Ball::put(Model& model, State& state, const Path& path, double radius) {
-  const double before = energy_of_obstacles(model, state);
-  if (there_) model.obstacles.pop_back();
-  obstacle_.name = "the ball";
-  obstacle_.center = Vec3::Zero();
-  obstacle_.path = path;
-  obstacle_.radius = radius;
-  obstacle_.stiffness = 1.0;  // until the shares of the surface are known
-  add_obstacle(model, obstacle_);
-  obstacle_.stiffness = model.obstacles.back().stiffness = pressure(model);
-  there_ = true;
-  state.energy.work_in += energy_of_obstacles(model, state) - before;
-}
-
-void Ball::move(Model& model, State& state, const Vec3& point, double radius, double size) {
+void Ball::move(sim::World& world, const Vec3& point, double radius) {
   wished_ = point;
   wished_radius_ = radius;
-  size_ = size;
-  if (there_) return;
-  before_ = here_ = {state.time, point};
-  put(model, state, Path{{here_}, Vec3::Zero(), false}, smallest * radius);
+  if (!tool_) {
+    // Softer than any: how hard it may press is known where the model has shares of its surface.
+    tool_ = world.add_tool("the ball", point, smallest * radius, 1.0);
+  }
+  hold(world);
 }
 
-void Ball::remove(Model& model, State& state) {
-  if (!there_) return;
-  const double before = energy_of_obstacles(model, state);
-  model.obstacles.pop_back();
-  there_ = false;
-  state.energy.work_in += energy_of_obstacles(model, state) - before;
+void Ball::remove(sim::World& world) {
+  if (tool_) world.remove(*tool_);
+  tool_.reset();
 }
 
-void Ball::follow(Model& model, State& state, double interval) {
-  if (!there_) return;
-  const Vec3 here = obstacle_.path.at(state.time, Vec3::Zero());
+void Ball::follow(sim::World& world, double interval, double size) {
+  if (!tool_) return;
+  const Obstacle& ball = obstacle_of(world, *tool_);
+  const Vec3 here = ball.path.at(world.state().time, ball.center);
   const Vec3 to_go = wished_ - here;
-  const double most = fastest * size_ * interval;
+  const double most = fastest * size * interval;
   const Vec3 there = to_go.norm() <= most ? wished_ : Vec3(here + most / to_go.norm() * to_go);
   const double growth = wished_radius_ * interval / growing_time;
-  const double radius =
-      std::clamp(wished_radius_, obstacle_.radius - growth, obstacle_.radius + growth);
-  // The way up to now stays in the path: the work over a step is taken from where the ball was.
-  before_ = here_;
-  here_ = {state.time, here};
-  Path path;
-  if (before_.time > 0.0) path.keys.push_back({0.0, before_.move});
-  if (before_.time < state.time) path.keys.push_back(before_);
-  path.keys.push_back(here_);
-  path.keys.push_back({state.time + interval, there});
-  put(model, state, path, radius);
+  const double radius = std::clamp(wished_radius_, ball.radius - growth, ball.radius + growth);
+  world.lead(*tool_, {there, Mat3::Identity()}, interval);
+  world.reshape(*tool_, radius, stiffness_);
 }
 
-void Ball::hold(Model& model, State& state, double stable_step) {
-  stable_step_ = stable_step;
-  if (!there_) return;
-  there_ = false;  // not in this model yet
-  put(model, state, obstacle_.path, obstacle_.radius);
+void Ball::hold(sim::World& world) {
+  if (!tool_) return;
+  stiffness_ = pressure(world);
+  world.reshape(*tool_, obstacle_of(world, *tool_).radius, stiffness_);
 }
 
-std::optional<SphereStatus> Ball::status(const Model& model, const State& state) const {
-  if (!there_) return std::nullopt;
-  const ObstacleReading r = read_obstacles(model, state.position, state.time).back();
-  return SphereStatus{r.center, obstacle_.radius, r.force, r.contacts, Mat3::Identity()};
+Ball Ball::in(const sim::World& world) const {
+  Ball out = *this;
+  if (out.tool_) out.tool_ = world.counterpart(*out.tool_);
+  return out;
+}
+
+std::optional<SphereStatus> Ball::status(const sim::World& world) const {
+  if (!tool_) return std::nullopt;
+  const std::size_t i = world.index_of(*tool_);
+  const ObstacleReading r =
+      read_obstacles(world.model(), world.state().position, world.state().time)[i];
+  return SphereStatus{r.center, world.model().obstacles[i].radius, r.force, r.contacts,
+                      Mat3::Identity()};
 }
 
 }  // namespace sinew::live

@@ -1,4 +1,4 @@
-// The ball tool of the live view: an obstacle (forces/obstacles.h) that follows a pointer.
+// The ball tool of the live view: a tool (sim/world.h) that follows a pointer.
 //
 // It grows to its size within a tenth of a second and moves at a speed that tissue can follow: a
 // ball that is put into the tissue, or jumps, pushes it aside and does not tear it.
@@ -7,39 +7,37 @@
 #include <optional>
 
 #include "sinew/live/frame.h"
-#include "sinew/model/state.h"
+#include "sinew/sim/world.h"
 
 namespace sinew::live {
 
 class Ball {
  public:
-  // From here on the ball is to be at `point` with this radius [m]. `size` of the whole body [m].
-  void move(Model& model, State& state, const Vec3& point, double radius, double size);
-  void remove(Model& model, State& state);
+  // From here on the ball is to be at `point` with this radius [m].
+  void move(sim::World& world, const Vec3& point, double radius);
+  void remove(sim::World& world);
 
-  // Called between frames: the way of the next one, of `interval` [s].
-  void follow(Model& model, State& state, double interval);
+  // Called between frames: the way of the next one, of `interval` [s]. `size` of the whole body
+  // [m].
+  void follow(sim::World& world, double interval, double size);
 
-  // Puts the ball into a model that has taken the place of the one before. stable_step: what an
-  // explicit step may be [s], infinity: any. No node is pressed so hard that it would need a
-  // shorter one.
-  void hold(Model& model, State& state, double stable_step);
+  // Presses as hard as a model that has taken the place of the one before allows.
+  void hold(sim::World& world);
 
-  bool is_there() const { return there_; }
+  // The same ball in a world that has gone on from its own.
+  Ball in(const sim::World& world) const;
+
+  bool is_there() const { return tool_.has_value(); }
   double radius() const { return wished_radius_; }
-  std::optional<SphereStatus> status(const Model& model, const State& state) const;
+  std::optional<SphereStatus> status(const sim::World& world) const;
 
  private:
-  void put(Model& model, State& state, const Path& path, double radius);
-  double pressure(const Model& model) const;
+  double pressure(const sim::World& world) const;
 
-  bool there_ = false;
-  Vec3 wished_ = Vec3::Zero();  // [m]
-  double wished_radius_ = 0.0;  // [m]
-  double size_ = 0.0;           // of the body [m]
-  double stable_step_ = no_limit;
-  Obstacle obstacle_;       // as it is in the model, its last obstacle
-  KeyFrame before_, here_;  // where the last way began, and where this one does
+  std::optional<ObstacleHandle> tool_;  // none: the ball is not there
+  Vec3 wished_ = Vec3::Zero();          // [m]
+  double wished_radius_ = 0.0;          // [m]
+  double stiffness_ = 0.0;              // [N/m3]
 };
 
 }  // namespace sinew::live

@@ -1,4 +1,4 @@
-// What a live simulation can be told. Values are checked where they act (Simulation::apply).
+// The commands of a session. Values are checked where they act (apply_command.cpp).
 #pragma once
 
 #include <functional>

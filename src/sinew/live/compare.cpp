@@ -1,11 +1,11 @@
-// Simulation's other body: the same scene with another law, in lock-step.
+// A session's other body: the same scene with another law, in lock-step.
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <type_traits>
 
 #include "sinew/base/error.h"
-#include "sinew/live/simulation.h"
+#include "sinew/live/session.h"
 #include "sinew/scene/laws.h"
 
 namespace sinew::live {
@@ -38,7 +38,7 @@ Scene with_law(const Scene& scene, const LawChoice& law) {
 
 }  // namespace
 
-void Simulation::act(const SetCompare& c) {
+void Session::act(const SetCompare& c) {
   if (c.law.empty()) {
     other_.reset();
     compare_.clear();
@@ -51,17 +51,15 @@ void Simulation::act(const SetCompare& c) {
     throw Error(ErrorKind::usage, fmt::format("there is no law '{}' to compare with", c.law),
                 "one of " + names_of_laws());
   }
-  auto other = std::make_unique<Simulation>(with_law(scene_, *law));
+  std::unique_ptr<Session> other(new Session(with_law(world().current_scene(), *law), this));
   other_.reset();
   // Both begin anew from this state: with the same law they would take the same steps.
-  rebuild(scene_, &run_.state);
-  other->leader_ = this;
-  other->rebuild(other->scene_, &run_.state);
-  other->hands_ = hands_;
-  other->ball_ = ball_;
-  const double stable = other->run_.memory.stable_step;
-  other->hands_.hold(*other->model_, other->controls_, other->run_.state, stable);
-  other->ball_.hold(*other->model_, other->run_.state, stable);
+  world().choose_steps();
+  changed();
+  other->world().go_on_from(world());
+  other->grabs_ = grabs_.in(other->world());
+  other->ball_ = ball_.in(other->world());
+  other->changed();
   other->topology_ = topology_;
   other_ = std::move(other);
   compare_ = c.law;
@@ -71,7 +69,7 @@ void Simulation::act(const SetCompare& c) {
 }
 
 // Passes on what concerns both bodies. Where the other cannot follow, it goes.
-void Simulation::tell_other(const Command& command) {
+void Session::tell_other(const Command& command) {
   try {
     std::visit(
         [&](const auto& c) {
@@ -96,7 +94,7 @@ void Simulation::tell_other(const Command& command) {
 }
 
 // Steps the other to the time of this one. False where there is no time left for that.
-bool Simulation::catch_up(Clock::time_point deadline, const std::atomic<bool>* hurry) {
+bool Session::catch_up(Clock::time_point deadline, const std::atomic<bool>* hurry) {
   if (!other_) return true;
   const std::uint32_t errors = other_->errors_;
   const double close = 1e-9 * std::max(1.0, time());
@@ -113,20 +111,20 @@ bool Simulation::catch_up(Clock::time_point deadline, const std::atomic<bool>* h
     if (ahead_ && !finished) return false;
   }
   if (ahead_) {
-    other_->hands_.follow(*other_->model_, other_->controls_, other_->run_.state, size());
-    other_->ball_.follow(*other_->model_, other_->run_.state, 1.0 / frames_per_second);
+    other_->grabs_.follow(other_->world(), size());
+    other_->ball_.follow(other_->world(), 1.0 / frames_per_second, size());
   }
   note_pair();
   return true;
 }
 
-void Simulation::note_pair() {
-  pair_.mine = run_.state.position;
-  pair_.others = other_->run_.state.position;
+void Session::note_pair() {
+  pair_.mine = state().position;
+  pair_.others = other_->state().position;
 }
 
 // Simulated seconds per second of wall time that the steps alone would allow.
-double Simulation::capacity() const {
+double Session::capacity() const {
   if (last_speed_.wall == 0.0) return 0.0;
   double needed = last_speed_.wall / last_speed_.simulated;
   if (other_ && other_->last_speed_.simulated > 0.0) {

@@ -79,7 +79,7 @@ class ClockPace {
 }  // namespace
 
 Runner::Runner(const Scene& scene, std::function<void()> published)
-    : simulation_(scene), published_(std::move(published)) {
+    : session_(scene), published_(std::move(published)) {
   publish();
   thread_ = std::thread([this] { work(); });
 }
@@ -115,14 +115,14 @@ Snapshot Runner::snapshot() const {
   return snapshot_;
 }
 
-void Runner::obey(std::deque<Command>& commands) {
+void Runner::apply(std::deque<Command>& commands) {
   for (const Command& command : commands) {
     try {
-      simulation_.apply(command);
+      session_.apply(command);
     } catch (const Error& e) {
-      simulation_.report(e);
+      session_.report(e);
     } catch (const std::exception& e) {  // such as memory that a finer mesh would need
-      simulation_.report(Error(ErrorKind::internal, e.what(), "a smaller scene"));
+      session_.report(Error(ErrorKind::internal, e.what(), "a smaller scene"));
     }
   }
   status_at_ = {};
@@ -135,31 +135,31 @@ void Runner::work() {
     {
       std::unique_lock lock(mutex_);
       const auto called = [&] { return quit_ || !commands_.empty(); };
-      if (!simulation_.running()) {
+      if (!session_.running()) {
         wake_.wait(lock, called);
-      } else if (pace.fits(simulation_.time_scale())) {
-        wake_.wait_until(lock, pace.due(simulation_.time()), called);
+      } else if (pace.fits(session_.time_scale())) {
+        wake_.wait_until(lock, pace.due(session_.time()), called);
       }
       if (quit_) return;
       commands.swap(commands_);
       hurry_ = false;
     }
-    const double before = simulation_.time();
-    if (!commands.empty()) obey(commands);
-    if (!simulation_.running()) {
+    const double before = session_.time();
+    if (!commands.empty()) apply(commands);
+    if (!session_.running()) {
       pace.stop();
       rate_ = 0.0;
     } else {
-      if (!pace.fits(simulation_.time_scale()) || simulation_.time() < before) {
-        pace.start(simulation_.time(), simulation_.time_scale());
+      if (!pace.fits(session_.time_scale()) || session_.time() < before) {
+        pace.start(session_.time(), session_.time_scale());
       }
       // Woken by a command before the frame is due: it is shown when that time comes.
-      if (Clock::now() < pace.due(simulation_.time())) continue;
-      simulation_.advance(Clock::now() + longest_slice, &hurry_);
-      pace.note(simulation_.time(), rate_);
+      if (Clock::now() < pace.due(session_.time())) continue;
+      session_.advance(Clock::now() + longest_slice, &hurry_);
+      pace.note(session_.time(), rate_);
       // Hands that never rest do not keep frames from being shown.
       if (hurry_ && Clock::now() - published_at_ < longest_slice) continue;
-      if (!simulation_.running()) status_at_ = {};
+      if (!session_.running()) status_at_ = {};
     }
     publish();
   }
@@ -168,12 +168,12 @@ void Runner::work() {
 void Runner::publish() {
   published_at_ = Clock::now();
   Snapshot next;
-  next.topology = simulation_.topology();
-  next.parameters = simulation_.parameters();
-  next.frame = std::make_shared<Frame>(simulation_.frame());
+  next.topology = session_.topology();
+  next.parameters = session_.parameters();
+  next.frame = std::make_shared<Frame>(session_.frame());
   const Clock::time_point now = Clock::now();
   if (now - status_at_ >= between_status) {
-    Status status = simulation_.status();
+    Status status = session_.status();
     status.rate = rate_;
     if (status.limit.empty() && rate_ > 0.0 && rate_ < 0.9 * status.time_scale) {
       status.limit = "the machine has other things to do as well";

@@ -10,7 +10,7 @@
 #include <mutex>
 #include <thread>
 
-#include "sinew/live/simulation.h"
+#include "sinew/live/session.h"
 
 namespace sinew::live {
 
@@ -24,7 +24,7 @@ struct Snapshot {
 
 class Runner {
  public:
-  // Builds the scene before it returns; throws what Simulation throws. `published` is called from
+  // Builds the scene before it returns; throws what Session throws. `published` is called from
   // the simulation's thread after every new frame or status, and has to be quick.
   explicit Runner(const Scene& scene, std::function<void()> published = {});
   ~Runner();  // ends the thread after the step under way
@@ -39,12 +39,12 @@ class Runner {
 
  private:
   void work();
-  void obey(std::deque<Command>& commands);
+  void apply(std::deque<Command>& commands);
   void publish();
 
   static constexpr std::size_t most_commands = 256;
 
-  Simulation simulation_;
+  Session session_;
   std::function<void()> published_;
   double rate_ = 0.0;              // see Status
   Clock::time_point status_at_{};  // when it was last measured

@@ -15,8 +15,8 @@
 #include "sinew/io/file_io.h"
 #include "sinew/io/pvd.h"
 #include "sinew/io/vtu.h"
-#include "sinew/run/summary.h"
 #include "sinew/sim/obstacle_reading.h"
+#include "sinew/sim/readings.h"
 
 namespace sinew {
 namespace {
@@ -107,9 +107,9 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
   frames_ = open_table(folder_ / "frames.csv", frames_header, rows);
 }
 
-void Recorder::record(const Controls& controls, RunState& run, const std::vector<Vec3>& force) {
+void Recorder::record(const Controls& controls, const RunState& run, const std::vector<Vec3>& force,
+                      ContactFinder* finder) {
   const Energies e = measure_energies(model_, controls, run.state, force);
-  run.frame_times.push_back(run.state.time);
   if (vtu_) {
     io::write_file(folder_ / frame_file(scene_, run.frame_times.size() - 1),
                    format_frame(model_, run, force, encoding_, cells_));
@@ -123,7 +123,7 @@ void Recorder::record(const Controls& controls, RunState& run, const std::vector
     add(p.position);
     add(p.displacement);
   }
-  for (const ObstacleReading& o : read_obstacles(model_, run.state)) {
+  for (const ObstacleReading& o : read_obstacles(model_, run.state, finder)) {
     add(o.center);
     add(o.force);
     row += fmt::format(",{},{}", o.travel.norm(), against_travel(o));
@@ -131,16 +131,10 @@ void Recorder::record(const Controls& controls, RunState& run, const std::vector
   add_row(probes_, folder_ / "probes.csv", row);
 
   const StretchRange range = measure_stretch(model_, x);
-  double rest = 0.0;
-  double volume = 0.0;
-  for (const Body& body : model_.bodies) {
-    rest += body.rest_volume;
-    volume += body.rest_volume * volume_ratio(model_, body, x);
-  }
   add_row(energy_, folder_ / "energy.csv",
           fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", run.state.time, run.step, e.kinetic,
                       e.elastic, e.gravity, e.contact, e.dissipated, e.work_in, e.total(),
-                      volume / rest, range.stretch, range.compress, run.contacts));
+                      volume_ratio(model_, x), range.stretch, range.compress, run.contacts));
   const FrameWork& w = run.work;
   add_row(frames_, folder_ / "frames.csv",
           fmt::format("{},{},{:.4f},{},{},{},{:.4g},{}", run.frame, run.state.time, 1e3 * w.seconds,

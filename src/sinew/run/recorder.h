@@ -6,6 +6,7 @@
 #include <fstream>
 #include <string>
 
+#include "sinew/contact/contact_finder.h"
 #include "sinew/io/vtu.h"
 #include "sinew/model/controls.h"
 #include "sinew/scene/scene.h"
@@ -20,9 +21,10 @@ class Recorder {
   Recorder(const Scene& scene, const Model& model, std::filesystem::path folder,
            const RunState& run);
 
-  // Writes the frame that the state now stands at and appends its time to run.frame_times. `force`:
-  // of all terms there [N] (nodes), as below.
-  void record(const Controls& controls, RunState& run, const std::vector<Vec3>& force);
+  // Writes the frame that the state now stands at, the last of run.frame_times. `force`: of all
+  // terms there [N] (nodes), as below. `finder`: null if nothing can touch.
+  void record(const Controls& controls, const RunState& run, const std::vector<Vec3>& force,
+              ContactFinder* finder);
 
  private:
   void write_collection(const RunState& run) const;

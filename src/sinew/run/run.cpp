@@ -2,20 +2,19 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "sinew/base/clock.h"
-#include "sinew/base/hash.h"
 #include "sinew/forces/inversion_recovery.h"
-#include "sinew/forces/springs.h"
+#include "sinew/forces/terms.h"
 #include "sinew/io/file_io.h"
 #include "sinew/run/force_curve.h"
 #include "sinew/run/recorder.h"
-#include "sinew/scene/build.h"
 #include "sinew/sim/checkpoint.h"
-#include "sinew/sim/stepping.h"
+#include "sinew/sim/internals.h"
 
 namespace sinew {
 namespace {
@@ -51,58 +50,54 @@ void prepare_folder(const Scene& scene, const RunOptions& options) {
   io::write_file(options.out / scene_name, document_with_base(scene));
 }
 
-// One run from where RunState stands to its end.
+// One run of a World from where it stands to its end, into a folder.
 class Runner {
  public:
-  Runner(const Scene& scene, const Model& model, std::vector<std::string> meshes,
-         std::vector<std::string> warnings, const RunOptions& options)
-      : scene_(scene),
-        model_(model),
-        controls_(initial_controls(model)),
-        meshes_(std::move(meshes)),
-        warnings_(std::move(warnings)),
-        options_(options) {}
+  Runner(sim::World& world, const RunOptions& options, Clock::time_point start)
+      : world_(world),
+        run_(world.run()),
+        options_(options),
+        start_(start),
+        wall_before_(run_.wall_seconds),
+        resumed_(!run_.frame_times.empty()) {}
 
-  RunResult run(RunState run) {
-    const Clock::time_point start = Clock::now();
-    const double wall_before = run.wall_seconds;
-    const double sim_before = run.state.time;
-    Stepping stepping(scene_, model_, controls_, run);
-    if (options_.on_stepper && !run.stepper_reason.empty()) {
-      options_.on_stepper(run.stepper, run.stepper_reason);
+  RunResult run() {
+    const double sim_before = run_.state.time;
+    const double checkpoint = world_.scene().output.checkpoint;
+    const std::int64_t frames = world_.stepping().frame_count();
+    if (options_.on_stepper && !run_.stepper_reason.empty()) {
+      options_.on_stepper(run_.stepper, run_.stepper_reason);
     }
-    std::optional<Recorder> recorder;
     if (!options_.out.empty()) {
-      prepare_folder_once(run);
-      recorder.emplace(scene_, model_, options_.out, run);
+      if (!resumed_) prepare_folder(world_.scene(), options_);
+      recorder_.emplace(world_.scene(), world_.model(), options_.out, run_);
     }
-    if (run.frame_times.empty()) {
-      run.start_energy = measure_energies(model_, controls_, run.state,
-                                          stepping.forces().evaluate(controls_, run.state).force)
-                             .total();
-      record(recorder, run, stepping.forces());
-      save(run);
+    if (!resumed_) {
+      run_.start_energy =
+          measure_energies(world_.model(), world_.controls(), run_.state, force()).total();
+      record();
+      save();
     }
+    world_.keep();
 
     RunResult result;
-    RunState good = run;  // at the last finished frame: what is kept when the run diverges
     Clock::time_point saved = Clock::now();
     try {
-      while (run.frame < stepping.frame_count()) {
-        const bool finished = stepping.advance_frame(controls_, run, options_.stop);
-        run.wall_seconds = wall_before + seconds_since(start);
+      while (run_.frame < frames) {
+        const bool finished = world_.advance_frame(options_.stop);
+        count_time();
         if (finished) {
-          record(recorder, run, stepping.forces());
-          good = run;
-          report({run.state.time, scene_.duration, seconds_since(start), sim_before, run.frame,
-                  stepping.frame_count()});
+          record();
+          world_.keep();
+          report({run_.state.time, world_.scene().duration, seconds_since(start_), sim_before,
+                  run_.frame, frames});
         }
         if (options_.stop != nullptr && options_.stop->load()) {
-          if (run.frame < stepping.frame_count()) result.status = RunStatus::interrupted;
+          if (run_.frame < frames) result.status = RunStatus::interrupted;
           break;
         }
-        if (finished && seconds_since(saved) >= scene_.output.checkpoint) {
-          save(run);
+        if (finished && seconds_since(saved) >= checkpoint) {
+          save();
           saved = Clock::now();
         }
       }
@@ -110,107 +105,103 @@ class Runner {
       if (error.kind() != ErrorKind::diverged) throw;
       result.status = RunStatus::diverged;
       result.error = error;
-      run = good;
     }
-    run.wall_seconds = wall_before + seconds_since(start);
-    save(run);
-    result.summary = finish_summary(run, stepping.forces(), result.status);
+    count_time();
+    save();
+    result.summary = finish_summary(result.status);
     return result;
   }
 
  private:
-  void prepare_folder_once(const RunState& run) {
-    if (run.frame_times.empty()) prepare_folder(scene_, options_);
+  void count_time() { run_.wall_seconds = wall_before_ + seconds_since(start_); }
+
+  // Of all terms at the state [N] (nodes).
+  const std::vector<Vec3>& force() const {
+    return world_.stepping().forces().evaluate(world_.controls(), run_.state).force;
   }
 
-  void record(std::optional<Recorder>& recorder, RunState& run, ForceEvaluator& forces) const {
-    const StretchRange range = measure_stretch(model_, run.state.position);
-    run.peak_stretch = std::max(run.peak_stretch, range.stretch);
-    run.peak_compress = std::max(run.peak_compress, range.compress);
-    run.peak_inverted_tets =
-        std::max(run.peak_inverted_tets, count_inverted(model_, run.state.position));
-    if (recorder) {
-      recorder->record(controls_, run, forces.evaluate(controls_, run.state).force);
-    } else {
-      run.frame_times.push_back(run.state.time);
-    }
+  void record() {
+    world_.log_frame();
+    if (recorder_) recorder_->record(world_.controls(), run_, force(), world_.finder());
   }
 
-  void save(const RunState& run) const {
-    if (!options_.out.empty()) write_checkpoint(options_.out / checkpoint_name, model_, run);
+  void save() const {
+    if (!options_.out.empty()) world_.write_checkpoint(options_.out / checkpoint_name);
   }
 
   void report(const Progress& progress) const {
     if (options_.on_progress) options_.on_progress(progress);
   }
 
-  Summary finish_summary(RunState& run, ForceEvaluator& forces, RunStatus status) const {
-    Summary s = summarize(scene_, model_, controls_, meshes_, run,
-                          forces.evaluate(controls_, run.state).force);
+  // A run that goes on does not tell again how its bodies overlapped at the start.
+  std::vector<std::string> warnings() const {
+    std::vector<std::string> out = world_.warnings();
+    if (resumed_) out.resize(out.size() - world_.report().warnings.size());
+    return out;
+  }
+
+  Summary finish_summary(RunStatus status) const {
+    const Scene& scene = world_.scene();
+    std::vector<std::string> meshes;
+    for (const BuildReport::Body& body : world_.report().bodies) meshes.push_back(body.mesh);
+    Summary s =
+        summarize(scene, world_.model(), world_.controls(), meshes, run_, force(), world_.finder());
     s.status = status;
-    s.warnings = warnings_;
-    if (scene_.dt && run.step_reductions > 0) {
+    s.warnings = warnings();
+    if (scene.dt && run_.step_reductions > 0) {
       s.warnings.push_back(
           fmt::format("the given step {:.4g} s was above the stable one ({:.4g} s at the least) as "
                       "the body deformed, and was divided {} times; take dt = \"auto\"",
-                      *scene_.dt / scene_.substeps, run.smallest_stable_step, run.step_reductions));
+                      *scene.dt / scene.substeps, run_.smallest_stable_step, run_.step_reductions));
     }
-    if (run.unmet_limits > 0) {
+    if (run_.unmet_limits > 0) {
       const char* remedy =
-          scene_.stepper == StepperKind::verlet ? "more limit_sweeps" : "a smaller dt";
+          scene.stepper == StepperKind::verlet ? "more limit_sweeps" : "a smaller dt";
       s.warnings.push_back(
           fmt::format("{} of {} steps ended with a limit violated; {}, or a larger "
                       "limit_tolerance, or limits that the pins leave room for",
-                      run.unmet_limits, run.state.step, remedy));
+                      run_.unmet_limits, run_.state.step, remedy));
     }
-    if (model_.bounces() && scene_.stepper == StepperKind::implicit) {
+    if (world_.model().bounces() && scene.stepper == StepperKind::implicit) {
       s.warnings.push_back("implicit steps know no restitution: every impact is plastic");
     }
-    if (run.recovery_steps > 0) {
+    if (run_.recovery_steps > 0) {
       s.warnings.push_back(fmt::format(
           "a body was tangled (over {:.0f} % of its tets inside out) for {} of {} steps "
           "and was led back to its rest shape",
-          100.0 * tangled_share, run.recovery_steps, run.state.step));
+          100.0 * tangled_share, run_.recovery_steps, run_.state.step));
     }
     if (!options_.out.empty()) {
-      write_force_curves(options_.out, model_);
+      write_force_curves(options_.out, world_.model());
       io::write_file(options_.out / summary_name, to_json(s).dump(2) + "\n");
     }
     return s;
   }
 
-  const Scene& scene_;
-  const Model& model_;
-  const Controls controls_;
-  std::vector<std::string> meshes_;
-  std::vector<std::string> warnings_;
+  sim::World& world_;
+  RunState& run_;
   const RunOptions& options_;
+  const Clock::time_point start_;
+  const double wall_before_;
+  const bool resumed_;
+  std::optional<Recorder> recorder_;
 };
 
 RunResult build_and_run(const Scene& scene, const RunOptions& options, bool resume) {
-  BuildReport report;
-  const Model model = build_model(scene, &report);
-  std::vector<std::string> meshes;
-  std::vector<std::string> warnings = scene.warnings;
-  for (const BuildReport::Body& body : report.bodies) {
-    meshes.push_back(body.mesh);
-    for (const std::string& w : body.warnings) {
-      warnings.push_back(fmt::format("body {}: {}", body.name, w));
-    }
-  }
-  if (!resume) {
-    for (const std::string& w : report.warnings) {
-      warnings.push_back(w);
-      if (options.on_warning) options.on_warning(w);
-    }
-  }
-  RunState start;
-  if (resume) {
-    start = read_checkpoint(options.out / checkpoint_name, model);
-  } else {
-    start.state = initial_state(model);
-  }
-  return Runner(scene, model, meshes, warnings, options).run(std::move(start));
+  Clock::time_point start;
+  sim::WorldOptions how;
+  how.stepping = [](const Scene& s) { return stepping_options(s); };
+  how.start = [&](const Model& model, const BuildReport& report) {
+    start = Clock::now();
+    if (resume) return read_checkpoint(options.out / checkpoint_name, model);
+    if (options.on_warning)
+      for (const std::string& w : report.warnings) options.on_warning(w);
+    RunState run;
+    run.state = initial_state(model);
+    return run;
+  };
+  Simulation simulation = sim::simulate(scene, std::move(how));
+  return Runner(sim::internals(simulation), options, start).run();
 }
 
 }  // namespace

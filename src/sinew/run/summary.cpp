@@ -8,7 +8,6 @@
 #include "sinew/forces/springs.h"
 #include "sinew/forces/strain_limits.h"
 #include "sinew/forces/volume.h"
-#include "sinew/mesh/tet_mesh.h"
 #include "sinew/sim/obstacle_reading.h"
 #include "sinew/solver/implicit.h"
 
@@ -60,32 +59,9 @@ nlohmann::ordered_json to_json(const BudgetSummary& s) {
 
 }  // namespace
 
-std::int64_t count_inverted(const Model& model, const std::vector<Vec3>& x) {
-  return std::count_if(model.tets.begin(), model.tets.end(),
-                       [&](const Tet& t) { return signed_volume(x, t) < 0.0; });
-}
-
-std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3>& x) {
-  std::vector<ProbeReading> readings;
-  for (const Probe& probe : model.probes) {
-    ProbeReading r;
-    r.name = probe.name;
-    Vec3 rest = Vec3::Zero();
-    for (const Index node : probe.nodes) {
-      r.position += x[uz(node)];
-      rest += model.rest_position[uz(node)];
-    }
-    const auto count = static_cast<double>(probe.nodes.size());
-    r.position /= count;
-    r.displacement = r.position - rest / count;
-    readings.push_back(std::move(r));
-  }
-  return readings;
-}
-
 Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
                   const std::vector<std::string>& meshes, RunState& run,
-                  const std::vector<Vec3>& force) {
+                  const std::vector<Vec3>& force, ContactFinder* finder) {
   const std::vector<Vec3>& x = run.state.position;
   Summary s;
   static_cast<RunCounters&>(s) = run;
@@ -97,15 +73,11 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   s.scene_hash = hex(scene_hash.digest());
   s.model_hash = hex(model.hash());
   s.state_hash = hex(run.state.hash());
-  double rest_volume = 0.0;
-  double volume = 0.0;
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     s.bodies.push_back(summarize_body(model, model.bodies[b], meshes[b], x));
     s.tets += s.bodies.back().tets;
-    rest_volume += s.bodies.back().rest_volume;
-    volume += s.bodies.back().rest_volume * s.bodies.back().volume_ratio;
   }
-  s.volume_ratio = volume / rest_volume;
+  s.volume_ratio = volume_ratio(model, x);
   s.inverted_tets = count_inverted(model, x);
   s.nodes = model.body_node_count();
   s.springs = model.spring_count();
@@ -133,7 +105,7 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   if (scene.budget_ms) s.budget = summarize_budget(*scene.budget_ms, run);
   s.largest_cell_change = largest_cell_change(model, x);
   s.probes = read_probes(model, x);
-  s.obstacles = read_obstacles(model, run.state);
+  s.obstacles = read_obstacles(model, run.state, finder);
   return s;
 }
 

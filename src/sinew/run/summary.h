@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "sinew/contact/contact_finder.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/terms.h"
 #include "sinew/scene/scene.h"
+#include "sinew/sim/readings.h"
 #include "sinew/sim/run_state.h"
 
 namespace sinew {
@@ -21,12 +23,6 @@ constexpr std::array<Word<RunStatus>, 3> words_of(RunStatus) {
            {RunStatus::interrupted, "interrupted"},
            {RunStatus::diverged, "diverged"}}};
 }
-
-struct ProbeReading {
-  std::string name;
-  Vec3 position = Vec3::Zero();      // mean of its nodes [m]
-  Vec3 displacement = Vec3::Zero();  // of that mean from the rest position [m]
-};
 
 struct BodySummary {
   std::string name;
@@ -82,16 +78,11 @@ struct Summary : RunCounters {
   double realtime_factor() const { return wall_seconds > 0.0 ? sim_seconds / wall_seconds : 0.0; }
 };
 
-// Tets with v_t < 0 at positions x.
-std::int64_t count_inverted(const Model& model, const std::vector<Vec3>& x);
-
-// The probes' means at positions x.
-std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3>& x);
-
-// Measures the run as it stands. `meshes`: where each body's mesh came from.
+// Measures the run as it stands. `meshes`: where each body's mesh came from; `finder`: null if
+// nothing can touch.
 Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
                   const std::vector<std::string>& meshes, RunState& run,
-                  const std::vector<Vec3>& force);
+                  const std::vector<Vec3>& force, ContactFinder* finder);
 
 // The object of summary.json: docs/output.md names its keys.
 nlohmann::ordered_json to_json(const Summary& summary);

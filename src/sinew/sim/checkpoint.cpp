@@ -1,19 +1,16 @@
 #include "sinew/sim/checkpoint.h"
 
-#include <bit>
 #include <cstring>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include "sinew/base/error.h"
-#include "sinew/base/hash.h"
 #include "sinew/io/file_io.h"
+#include "sinew/sim/bytes.h"
 
 namespace sinew {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "checkpoints are little-endian");
 
 constexpr std::string_view magic = "SINEWCP7";
 
@@ -55,49 +52,6 @@ void visit(Archive& a, Run& r) {
   for_each_counter(r.work, counter);
 }
 
-struct CheckpointWriter {
-  std::string bytes;
-  template <typename T>
-  void value(const T& v) {
-    bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
-  }
-  template <typename Array>
-  void array(const Array& v) {
-    value(static_cast<std::uint64_t>(v.size()));
-    bytes.append(reinterpret_cast<const char*>(v.data()),
-                 v.size() * sizeof(typename Array::value_type));
-  }
-};
-
-struct CheckpointReader {
-  std::string_view bytes;
-  bool good = true;
-  template <typename T>
-  void value(T& v) {
-    good = good && bytes.size() >= sizeof v;
-    if (!good) return;
-    std::memcpy(&v, bytes.data(), sizeof v);
-    bytes.remove_prefix(sizeof v);
-  }
-  template <typename Array>
-  void array(Array& v) {
-    constexpr std::size_t each = sizeof(typename Array::value_type);
-    std::uint64_t size = 0;
-    value(size);
-    good = good && size <= bytes.size() / each;
-    if (!good) return;
-    v.resize(size);
-    if (size > 0) std::memcpy(static_cast<void*>(v.data()), bytes.data(), size * each);
-    bytes.remove_prefix(size * each);
-  }
-};
-
-std::uint64_t digest(std::string_view bytes) {
-  Hash h;
-  h.bytes(bytes.data(), bytes.size());
-  return h.digest();
-}
-
 [[noreturn]] void reject(const std::string& name, const char* why, const char* remedy) {
   throw Error(ErrorKind::input, why, remedy, Location{name});
 }
@@ -105,8 +59,7 @@ std::uint64_t digest(std::string_view bytes) {
 }  // namespace
 
 std::string encode_run(std::uint64_t model_hash, const RunState& run) {
-  CheckpointWriter w;
-  w.bytes = magic;
+  ByteWriter w(magic);
   w.value(model_hash);
   visit(w, run);
   w.value(digest(w.bytes));
@@ -125,7 +78,7 @@ RunState decode_run(std::string_view bytes, const std::string& name, std::uint64
   if (closing != digest(bytes)) reject(name, "the checkpoint is damaged", "start the run again");
   bytes.remove_prefix(magic.size());
 
-  CheckpointReader r{bytes};
+  ByteReader r(bytes);
   std::uint64_t model = 0;
   r.value(model);
   if (model != model_hash) {
@@ -134,15 +87,16 @@ RunState decode_run(std::string_view bytes, const std::string& name, std::uint64
   }
   RunState run;
   visit(r, run);
-  if (!r.good || !r.bytes.empty() || run.state.position.size() != nodes ||
+  if (!r.all_read() || run.state.position.size() != nodes ||
       run.state.half_velocity.size() != nodes) {
     reject(name, "the checkpoint is damaged", "start the run again");
   }
   return run;
 }
 
-void write_checkpoint(const std::filesystem::path& file, const Model& model, const RunState& run) {
-  io::write_file(file, encode_run(model.hash(), run));
+void write_checkpoint(const std::filesystem::path& file, std::uint64_t model_hash,
+                      const RunState& run) {
+  io::write_file(file, encode_run(model_hash, run));
 }
 
 RunState read_checkpoint(const std::filesystem::path& file, const Model& model) {

@@ -18,7 +18,8 @@ RunState decode_run(std::string_view bytes, const std::string& name, std::uint64
                     std::size_t nodes);
 
 // Throws Error(io).
-void write_checkpoint(const std::filesystem::path& file, const Model& model, const RunState& run);
+void write_checkpoint(const std::filesystem::path& file, std::uint64_t model_hash,
+                      const RunState& run);
 
 // Throws Error(input) where the file is no checkpoint, is damaged, or belongs to another model.
 RunState read_checkpoint(const std::filesystem::path& file, const Model& model);

@@ -11,7 +11,7 @@ namespace sinew::sim {
 World& internals(Simulation& simulation);
 const World& internals(const Simulation& simulation);
 
-// From a scene that has been parsed, such as run/ and live/ hold.
-Simulation simulate(const Scene& scene, int threads = 0);
+// From a scene that has been parsed. Throws what building it and choosing its steps throw.
+Simulation simulate(const Scene& scene, WorldOptions options = {});
 
 }  // namespace sinew::sim

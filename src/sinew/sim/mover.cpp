@@ -16,6 +16,13 @@ Vec3 rotation_vector(const Mat3& rotation, const Vec3& near) {
   return (turn.angle() + full * std::round((near.dot(axis) - turn.angle()) / full)) * axis;
 }
 
+Pin* pin_of(Model& model, const Obstacle& obstacle) {
+  if (obstacle.nodes.size() == 0) return nullptr;
+  for (Pin& pin : model.pins)
+    if (!pin.nodes.empty() && pin.nodes.front() == obstacle.nodes.begin) return &pin;
+  return nullptr;
+}
+
 void lead_path(Path& path, const Vec3& pivot, const KeyFrame& to, double last_step, double start,
                double end) {
   // The same motion about the new pivot.

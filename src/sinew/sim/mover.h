@@ -4,7 +4,7 @@
 #include <sinew/types.h>
 
 #include "sinew/base/vec.h"
-#include "sinew/model/path.h"
+#include "sinew/model/model.h"
 
 namespace sinew::sim {
 
@@ -18,6 +18,9 @@ inline Point point(const Vec3& v) {
 // The rotation vector of a rotation [rad]; of those that differ by whole turns, the one nearest to
 // `near`.
 Vec3 rotation_vector(const Mat3& rotation, const Vec3& near);
+
+// The pin that moves the nodes of an obstacle that is a mesh; null for others.
+Pin* pin_of(Model& model, const Obstacle& obstacle);
 
 // Writes the path anew: up to `start` [s] as it was, as far back as a step of `last_step` [s]
 // looks; then to `to`, which is a motion about `pivot`, at constant speed until `end` > start; then

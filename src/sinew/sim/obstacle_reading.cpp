@@ -6,17 +6,15 @@
 #include "sinew/contact/contact_finder.h"
 
 namespace sinew {
-namespace {
 
-double longest_edge(const Model& model) {
+double touching_distance(const Model& model) {
   double longest = 0.0;
   for (const double l : model.skin.longest_edge) longest = std::max(longest, l);
-  return longest;
+  return 1e-3 * longest;
 }
 
-}  // namespace
-
-std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state) {
+std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
+                                            ContactFinder* finder) {
   std::vector<ObstacleReading> readings = read_obstacles(model, state.position, state.time);
   const bool hard = std::any_of(model.obstacles.begin(), model.obstacles.end(),
                                 [](const Obstacle& o) { return o.hard(); });
@@ -25,8 +23,9 @@ std::vector<ObstacleReading> read_obstacles(const Model& model, const State& sta
     if (model.obstacles[o].hard()) readings[o].force = state.obstacle_force[o];
 
   std::vector<Contact> contacts;
-  ContactFinder(model).find(state.position, state.position, state.time, state.time,
-                            1e-3 * longest_edge(model), contacts);
+  if (finder != nullptr)
+    finder->find(state.position, state.position, state.time, state.time, touching_distance(model),
+                 contacts);
   for (const Contact& c : contacts) {
     const Index obstacle = c.id.obstacle();
     if (obstacle < 0) continue;

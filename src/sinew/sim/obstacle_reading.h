@@ -3,16 +3,20 @@
 
 #include <vector>
 
+#include "sinew/contact/contact_finder.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
 
+// Places nearer than this to a hard obstacle touch it: a thousandth of the longest edge of the
+// bodies' surfaces [m].
+double touching_distance(const Model& model);
+
 // By obstacle. Soft: as the positions are (forces/obstacles.h). Hard: the force is the mean over
-// the last step, depth that of the deepest place inside, and places count as touching that are
-// inside or nearer than a thousandth of the longest edge of the bodies' surfaces.
-// Looks for contacts from nothing where there are hard obstacles, which costs about as much as a
-// step.
-std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state);
+// the last step, depth that of the deepest place inside, and places count that touch. `finder`: of
+// the model; null if nothing can touch (sim/world.h).
+std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
+                                            ContactFinder* finder);
 
 }  // namespace sinew

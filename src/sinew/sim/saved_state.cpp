@@ -4,12 +4,12 @@
 #include <cstring>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 
 #include "sinew/base/error.h"
-#include "sinew/base/hash.h"
+#include "sinew/sim/bytes.h"
 #include "sinew/sim/checkpoint.h"
+#include "sinew/sim/readings.h"
 #include "sinew/sim/world.h"
 
 namespace sinew::sim {
@@ -18,82 +18,25 @@ namespace {
 constexpr std::string_view magic = "SINEWST1";
 const std::string call = "restore()";
 
-class Writer {
- public:
-  template <typename T>
-  void value(const T& v) {
-    static_assert(std::is_trivially_copyable_v<T>);
-    bytes.append(reinterpret_cast<const char*>(&v), sizeof v);
+// A path; one list of members for reading and writing.
+template <typename Archive, typename APath>
+void path(Archive& a, APath& p) {
+  for (auto& key : p.keys) {
+    a.value(key.time);
+    a.vec(key.move);
+    a.vec(key.turn);
+    for (int i = 0; i < 9; ++i) a.value(key.deform.data()[i]);
   }
-  void vec(const Vec3& v) {
-    for (int a = 0; a < 3; ++a) value(v[a]);
-  }
-  void path(const Path& p) {
-    value(static_cast<std::uint64_t>(p.keys.size()));
-    for (const KeyFrame& key : p.keys) {
-      value(key.time);
-      vec(key.move);
-      vec(key.turn);
-      for (int i = 0; i < 9; ++i) value(key.deform.data()[i]);
-    }
-    vec(p.pivot);
-    value(p.smooth);
-  }
-  std::string bytes;
-};
-
-class Reader {
- public:
-  explicit Reader(std::string_view bytes) : bytes_(bytes) {}
-  template <typename T>
-  void value(T& v) {
-    if (bytes_.size() < sizeof v) return fail();
-    std::memcpy(&v, bytes_.data(), sizeof v);
-    bytes_.remove_prefix(sizeof v);
-  }
-  void vec(Vec3& v) {
-    for (int a = 0; a < 3; ++a) value(v[a]);
-  }
-  // How many things of so many bytes follow.
-  std::size_t count(std::size_t each) {
-    std::uint64_t n = 0;
-    value(n);
-    if (n > bytes_.size() / each) fail();
-    return good_ ? static_cast<std::size_t>(n) : 0;
-  }
-  void path(Path& p) {
-    p.keys.resize(count(16 * sizeof(double)));
-    for (KeyFrame& key : p.keys) {
-      value(key.time);
-      vec(key.move);
-      vec(key.turn);
-      for (int i = 0; i < 9; ++i) value(key.deform.data()[i]);
-    }
-    vec(p.pivot);
-    value(p.smooth);
-  }
-  std::string_view text(std::size_t size) {
-    if (bytes_.size() < size) fail();
-    if (!good_) return {};
-    const std::string_view out = bytes_.substr(0, size);
-    bytes_.remove_prefix(size);
-    return out;
-  }
-  bool all_read() const { return good_ && bytes_.empty(); }
-
- private:
-  void fail() {
-    good_ = false;
-    bytes_ = {};
-  }
-  std::string_view bytes_;
-  bool good_ = true;
-};
-
-std::uint64_t digest(std::string_view bytes) {
-  Hash h;
-  h.bytes(bytes.data(), bytes.size());
-  return h.digest();
+  a.vec(p.pivot);
+  a.value(p.smooth);
+}
+void write_path(ByteWriter& w, const Path& p) {
+  w.value(static_cast<std::uint64_t>(p.keys.size()));
+  path(w, p);
+}
+void read_path(ByteReader& r, Path& p) {
+  p.keys.resize(r.count(16 * sizeof(double)));
+  path(r, p);
 }
 
 [[noreturn]] void refuse_damaged() {
@@ -104,8 +47,7 @@ std::uint64_t digest(std::string_view bytes) {
 }  // namespace
 
 std::string World::save() const {
-  Writer w;
-  w.bytes = magic;
+  ByteWriter w(magic);
   w.value(model_hash_);
   const std::string run = encode_run(model_hash_, run_);
   w.value(static_cast<std::uint64_t>(run.size()));
@@ -115,7 +57,7 @@ std::string World::save() const {
   const auto movers = [&](const std::vector<Mover>& all, const auto& things) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       w.value(all[i].held);
-      w.path(things[i].path);
+      write_path(w, things[i].path);
       w.value(all[i].to.has_value());
       const KeyFrame to = all[i].to.value_or(KeyFrame{});
       w.vec(to.move);
@@ -153,7 +95,7 @@ void World::restore(const std::string& bytes) {
   std::memcpy(&closing, view.data() + view.size() - sizeof closing, sizeof closing);
   view.remove_suffix(sizeof closing);
   if (closing != digest(view)) refuse_damaged();
-  Reader r(view.substr(magic.size()));
+  ByteReader r(view.substr(magic.size()));
 
   std::uint64_t hash = 0;
   r.value(hash);
@@ -176,7 +118,7 @@ void World::restore(const std::string& bytes) {
       bool goes = false;
       KeyFrame to;
       r.value(all[i].held);
-      r.path(paths[first + i]);
+      read_path(r, paths[first + i]);
       r.value(goes);
       r.vec(to.move);
       r.vec(to.turn);
@@ -212,7 +154,7 @@ void World::restore(const std::string& bytes) {
   if (!r.all_read()) refuse_damaged();
 
   run_ = std::move(run);
-  good_ = run_.state;
+  good_ = run_;
   clock_ = clock;
   controls_.gravity = gravity;
   obstacles_ = std::move(obstacles);
@@ -224,7 +166,7 @@ void World::restore(const std::string& bytes) {
   next_id_ = std::max(next_id_, next_id);
   grabs_ = std::move(grabs);
   controls_.grabs = std::move(springs);
-  last_inside_out_ = inverted_tets();
+  last_inverted_ = count_inverted(*model_, run_.state.position);
   ++changes_;
 }
 

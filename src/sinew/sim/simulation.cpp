@@ -12,6 +12,7 @@
 #include "sinew/scene/parse.h"
 #include "sinew/sim/internals.h"
 #include "sinew/sim/mover.h"
+#include "sinew/sim/readings.h"
 #include "sinew/sim/scene_parts.h"
 #include "sinew/sim/world.h"
 
@@ -84,12 +85,6 @@ sim::Source source_of(Scene scene) {
   return {std::move(scene), std::move(document)};
 }
 
-Point mean(const std::vector<Index>& nodes, const std::vector<Vec3>& x) {
-  Vec3 sum = Vec3::Zero();
-  for (const Index node : nodes) sum += x[uz(node)];
-  return sim::point(sum / static_cast<double>(nodes.size()));
-}
-
 template <typename Parts>
 std::vector<std::string> names(const Parts& parts) {
   std::vector<std::string> out;
@@ -104,14 +99,15 @@ std::vector<std::string> names(const Parts& parts) {
 Simulation Simulation::from_file(const std::filesystem::path& file,
                                  const SimulationOptions& options) {
   const int threads = checked_threads(options.threads);
-  return Simulation(
-      std::make_unique<sim::World>(source_of(load_scene(file, options.set)), threads));
+  return Simulation(std::make_unique<sim::World>(source_of(load_scene(file, options.set)),
+                                                 sim::WorldOptions{.threads = threads}));
 }
 
 Simulation Simulation::from_text(std::string_view toml, const SimulationOptions& options) {
   const int threads = checked_threads(options.threads);
   return Simulation(std::make_unique<sim::World>(
-      source_of(parse_scene(toml, "scene.toml", options.base, options.set)), threads));
+      source_of(parse_scene(toml, "scene.toml", options.base, options.set)),
+      sim::WorldOptions{.threads = threads}));
 }
 
 Simulation::Simulation(const SceneBuilder& scene, const SimulationOptions& options) {
@@ -122,7 +118,7 @@ Simulation::Simulation(const SceneBuilder& scene, const SimulationOptions& optio
   apply_overrides(source.document, options.set);
   source.scene = parse_tree(source.document, "SceneBuilder", options.base, {});
   source.scene.given = parts.given;
-  world_ = std::make_unique<sim::World>(std::move(source), threads);
+  world_ = std::make_unique<sim::World>(std::move(source), sim::WorldOptions{.threads = threads});
 }
 
 Simulation::Simulation(std::unique_ptr<sim::World> world) : world_(std::move(world)) {}
@@ -207,7 +203,8 @@ std::span<const BodyInfo> Simulation::bodies() const {
   return world().bodies();
 }
 Index Simulation::inverted_tets() const {
-  return world().inverted_tets();
+  const sim::World& w = world();
+  return static_cast<Index>(count_inverted(w.model(), w.state().position));
 }
 
 Index Simulation::nearest_node(const Point& place_of_it) const {
@@ -229,12 +226,8 @@ Index Simulation::nearest_node(const Point& place_of_it) const {
 std::vector<ProbeValue> Simulation::probes() const {
   const sim::World& w = world();
   std::vector<ProbeValue> out;
-  for (const Probe& probe : w.model().probes) {
-    ProbeValue value{probe.name, mean(probe.nodes, w.state().position), {}};
-    const Point rest = mean(probe.nodes, w.model().rest_position);
-    for (std::size_t a = 0; a < 3; ++a) value.displacement[a] = value.position[a] - rest[a];
-    out.push_back(std::move(value));
-  }
+  for (const ProbeReading& p : read_probes(w.model(), w.state().position))
+    out.push_back({p.name, sim::point(p.position), sim::point(p.displacement)});
   return out;
 }
 
@@ -256,10 +249,10 @@ void Simulation::remove(ObstacleHandle handle) {
   any_world().remove(handle);
 }
 void Simulation::move(ObstacleHandle handle, const RigidPose& to) {
-  any_world().move(handle, checked(to, "the pose"), false);
+  any_world().move(handle, checked(to, "the pose"));
 }
 void Simulation::place(ObstacleHandle handle, const RigidPose& to) {
-  any_world().move(handle, checked(to, "the pose"), true);
+  any_world().place(handle, checked(to, "the pose"));
 }
 
 RigidPose Simulation::pose(ObstacleHandle handle) const {
@@ -323,7 +316,7 @@ GrabHandle Simulation::grab(Index node, double radius) {
     refuse(fmt::format("the radius of the grab is {} m; expected above 0 and at most {:g} m",
                        radius, farthest),
            "some edges of the mesh: tissue within it is held");
-  return w.grab(node, radius);
+  return w.grab(node, radius, w.state().position[uz(node)]);
 }
 void Simulation::move(GrabHandle handle, const Point& target) {
   any_world().move(handle, sinew::place(target, "the target of the grab"));
@@ -387,15 +380,15 @@ World& internals(Simulation& simulation) {
 const World& internals(const Simulation& simulation) {
   return World::of(simulation);
 }
-Simulation simulate(const Scene& scene, int threads) {
-  return World::simulate(source_of(scene), threads);
+Simulation simulate(const Scene& scene, WorldOptions options) {
+  return World::simulate(source_of(scene), std::move(options));
 }
 
 World& World::of(const Simulation& simulation) {
   return simulation.any_world();
 }
-Simulation World::simulate(Source source, int threads) {
-  return Simulation(std::make_unique<World>(std::move(source), checked_threads(threads)));
+Simulation World::simulate(Source source, WorldOptions options) {
+  return Simulation(std::make_unique<World>(std::move(source), std::move(options)));
 }
 
 }  // namespace sim

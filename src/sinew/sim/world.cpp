@@ -3,42 +3,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "sinew/base/error.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/mesh/surface.h"
-#include "sinew/mesh/tet_mesh.h"
-#include "sinew/scene/build.h"
+#include "sinew/scene/overrides.h"
 #include "sinew/scene/parse.h"
-#include "sinew/sim/carry_over.h"
 #include "sinew/sim/describe.h"
 #include "sinew/sim/mover.h"
+#include "sinew/sim/state_transfer.h"
 #include "sinew/sim/stepping_options.h"
 
 namespace sinew::sim {
 namespace {
 
-constexpr double between_looks = 1.0 / 60.0;  // between states that are kept to go back to [s]
-constexpr std::size_t most_events = 1000;
-
 // Tells the simulations of a process apart, so that a handle is known by its own.
 std::uint64_t next_serial() {
   static std::atomic<std::uint64_t> serial{0};
   return ++serial;
-}
-
-// No simulation of a host comes to an end by itself.
-SteppingOptions without_end(const Scene& scene) {
-  SteppingOptions out = stepping_options(scene);
-  out.duration = no_limit;
-  return out;
-}
-
-Index count_inside_out(const Model& model, const std::vector<Vec3>& x) {
-  return static_cast<Index>(std::count_if(model.tets.begin(), model.tets.end(), [&](const Tet& t) {
-    return signed_volume(x, t) <= 0.0;
-  }));
 }
 
 std::vector<std::string> warnings_of(const Scene& scene, const BuildReport& report) {
@@ -48,27 +31,6 @@ std::vector<std::string> warnings_of(const Scene& scene, const BuildReport& repo
       out.push_back(fmt::format("body {}: {}", body.name, w));
   out.insert(out.end(), report.warnings.begin(), report.warnings.end());
   return out;
-}
-
-// Nodes in front of those of obstacles that are meshes.
-Index own_nodes(const Model& model) {
-  Index count = model.node_count();
-  for (const Obstacle& o : model.obstacles) count -= o.nodes.size();
-  return count;
-}
-
-const Obstacle* obstacle_named(const Model& model, const std::string& name) {
-  const auto found = std::find_if(model.obstacles.begin(), model.obstacles.end(),
-                                  [&](const Obstacle& o) { return o.name == name; });
-  return found == model.obstacles.end() ? nullptr : &*found;
-}
-
-// The pin that moves the nodes of an obstacle that is a mesh; null for others.
-Pin* pin_of(Model& model, const Obstacle& obstacle) {
-  if (obstacle.nodes.size() == 0) return nullptr;
-  for (Pin& pin : model.pins)
-    if (!pin.nodes.empty() && pin.nodes.front() == obstacle.nodes.begin) return &pin;
-  return nullptr;
 }
 
 }  // namespace
@@ -82,32 +44,48 @@ void World::require_idle() const {
   if (busy_.load()) Busy::refuse();
 }
 
-World::World(Source source, int threads) : serial_(next_serial()), arena_(threads) {
-  arena_.run([&] { build(std::move(source)); });
+World::World(Source source, WorldOptions options)
+    : serial_(next_serial()), options_(std::move(options)), arena_(options_.threads) {
+  arena_.run([&] { start(std::move(source)); });
 }
 
 World::~World() = default;
 
 // ---- building ----
 
-void World::build(Source source) {
-  source_ = std::move(source);
-  BuildReport report;
-  model_ = std::make_unique<Model>(build_model(source_.scene, &report));
-  model_hash_ = model_->hash();
-  warnings_ = warnings_of(source_.scene, report);
-  run_.state = initial_state(*model_);
-  controls_ = initial_controls(*model_);
-  stepping_ = std::make_unique<Stepping>(without_end(source_.scene), *model_, controls_, run_);
-  for (const Obstacle& o : model_->obstacles) obstacles_.push_back({next_id_++, o.name, false, {}});
-  for (const ScenePin& p : source_.scene.pins) pins_.push_back({next_id_++, p.name, false, {}});
-  for (const SceneBody& body : source_.scene.bodies) {
-    parts_.push_back({body.name, ""});
-    for (const SceneRegion& region : body.regions) parts_.push_back({body.name, region.name});
-  }
+// No simulation comes to an end by itself where its owner does not say so.
+SteppingOptions World::options_of(const Scene& scene) const {
+  if (options_.stepping) return options_.stepping(scene);
+  SteppingOptions out = stepping_options(scene);
+  out.duration = no_limit;
+  return out;
+}
+
+World::Built World::build(Source source) {
+  Built b;
+  b.source = std::move(source);
+  b.model = std::make_unique<Model>(build_model(b.source.scene, &b.report));
+  b.hash = b.model->hash();
+  return b;
+}
+
+void World::take(Built built) {
+  const StepperKind before = run_.stepper;
+  for (Mover& m : built.obstacles)
+    if (m.id == 0) m.id = next_id_++;
+  obstacles_ = std::move(built.obstacles);
+  source_ = std::move(built.source);
+  report_ = std::move(built.report);
+  stepping_ = std::move(built.stepping);  // before the model that the old one refers to
+  finder_.reset();
+  evaluator_.reset();
+  model_ = std::move(built.model);
+  model_hash_ = built.hash;
+  run_ = std::move(built.run);
+  warnings_ = warnings_of(source_.scene, report_);
+  hold_grabs();
   remember();
-  note_stepper(StepperKind::automatic);
-  look_for_inverted_tets();
+  note_stepper(before);
 }
 
 // What is read of the model.
@@ -120,12 +98,47 @@ void World::remember() {
     bodies_.push_back(std::move(info));
   }
   surface_ = build_surface(model_->tets, model_->body_node_count()).triangles;
-  evaluator_.reset();
-  finder_.reset();
-  good_ = run_.state;
+  good_ = run_;
   clock_ = run_.state.time;
-  last_inside_out_ = 0;
+  last_inverted_ = 0;
   ++changes_;
+}
+
+void World::start(Source source) {
+  Built b = build(std::move(source));
+  if (options_.start) {
+    b.run = options_.start(*b.model, b.report);
+  } else {
+    b.run.state = initial_state(*b.model);
+  }
+  controls_ = initial_controls(*b.model);
+  b.stepping = std::make_unique<Stepping>(options_of(b.source.scene), *b.model, controls_, b.run);
+  for (const Obstacle& o : b.model->obstacles) b.obstacles.push_back({0, o.name, false, {}, false});
+  take(std::move(b));
+  for (const ScenePin& p : source_.scene.pins)
+    pins_.push_back({next_id_++, p.name, false, {}, false});
+  for (const SceneBody& body : source_.scene.bodies) {
+    parts_.push_back({body.name, ""});
+    for (const SceneRegion& region : body.regions) parts_.push_back({body.name, region.name});
+  }
+  look_for_inverted_tets();
+}
+
+void World::reset() {
+  const Busy busy(*this);
+  arena_.run([&] {
+    Built b = build(source_);
+    b.run.state = initial_state(*b.model);
+    const Controls bare{controls_.gravity, {}};
+    b.stepping = std::make_unique<Stepping>(options_of(b.source.scene), *b.model, bare, b.run);
+    for (const Mover& m : obstacles_)
+      if (!m.tool) b.obstacles.push_back({m.id, m.name, false, {}, false});
+    controls_ = bare;
+    grabs_.clear();
+    for (Mover& m : pins_) m = {m.id, m.name, false, {}, false};
+    take(std::move(b));
+    look_for_inverted_tets();
+  });
 }
 
 Source World::changed(DocValue document, GivenMeshes given) const {
@@ -137,91 +150,54 @@ Source World::changed(DocValue document, GivenMeshes given) const {
   return out;
 }
 
-// The state as it goes on with another model of the same bodies. Nodes of obstacles that are meshes
-// come last: those that stay keep their places, the others are where their paths begin.
-State World::carry_over(const Model& after, const std::string& replaced) const {
-  State s = initial_state(after);
-  const State& old = run_.state;
-  const auto common = own_nodes(after);
-  std::copy_n(old.position.begin(), common, s.position.begin());
-  std::copy_n(old.half_velocity.begin(), common, s.half_velocity.begin());
-  s.last_step = old.last_step;
-  s.time = old.time;
-  s.step = old.step;
-  s.energy = old.energy;
-  s.obstacle_force.assign(after.obstacles.size(), Vec3::Zero());
-  for (std::size_t o = 0; o < after.obstacles.size(); ++o) {
-    const Obstacle& now = after.obstacles[o];
-    const Obstacle* before = now.name == replaced ? nullptr : obstacle_named(*model_, now.name);
-    if (before != nullptr) {
-      const auto at = static_cast<std::size_t>(before - model_->obstacles.data());
-      if (at < old.obstacle_force.size()) s.obstacle_force[o] = old.obstacle_force[at];
-      std::copy_n(old.position.begin() + before->nodes.begin, before->nodes.size(),
-                  s.position.begin() + now.nodes.begin);
-      std::copy_n(old.half_velocity.begin() + before->nodes.begin, before->nodes.size(),
-                  s.half_velocity.begin() + now.nodes.begin);
-    } else {
-      for (Index i = now.nodes.begin; i < now.nodes.end; ++i)
-        s.position[uz(i)] = now.path.at(s.time, after.rest_position[uz(i)]);
-    }
-  }
-  return s;
+Scene World::current_scene() const {
+  if (controls_.gravity == source_.scene.gravity) return source_.scene;
+  DocValue document = source_.document;
+  put_gravity(point(controls_.gravity), source_.scene.file, document);
+  return changed(std::move(document), source_.scene.given).scene;
 }
 
-// Makes everything anew before anything of it is put in place: what cannot be built leaves the
-// simulation as it was.
-void World::rebuild(Source source, const std::string& replaced, bool other_material) {
-  SteppingOptions options = without_end(source.scene);
-  BuildReport report;
-  auto model = std::make_unique<Model>(build_model(source.scene, &report));
-  const std::uint64_t hash = model->hash();
-
-  std::vector<Mover> movers;
-  for (Obstacle& o : model->obstacles) {
+// The model of another source of the same bodies and pins. Grabs and tools take no part in the
+// choice of the steps: how stiff they may be follows from it.
+void World::rebuild(Source source, const std::string& replaced, Steps steps) {
+  Built b = build(std::move(source));
+  for (Obstacle& o : b.model->obstacles) {
     const auto known = std::find_if(obstacles_.begin(), obstacles_.end(),
                                     [&](const Mover& m) { return m.name == o.name; });
-    movers.push_back(known != obstacles_.end() ? *known : Mover{0, o.name, false, {}});
+    b.obstacles.push_back(known != obstacles_.end() ? *known : Mover{0, o.name, false, {}, false});
+    Mover& mover = b.obstacles.back();
     if (o.name == replaced) {
-      movers.back().held = false;
-      movers.back().to.reset();
-    } else if (movers.back().held) {
+      mover.held = false;
+      mover.to.reset();
+    } else if (mover.held) {
       o.path = obstacle_named(*model_, o.name)->path;
-      if (Pin* pin = pin_of(*model, o)) pin->path = o.path;
+      if (Pin* pin = pin_of(*b.model, o)) pin->path = o.path;
     }
   }
   for (std::size_t p = 0; p < pins_.size(); ++p)
-    if (pins_[p].held) model->pins[p].path = model_->pins[p].path;
+    if (pins_[p].held) b.model->pins[p].path = model_->pins[p].path;
 
-  RunState run = run_;
-  run.state = carry_over(*model, replaced);
-  if (other_material) {
-    calm_softened_bodies(*model_, *model, run.state);
-  } else {
-    options.stepper = run.stepper;  // no other one is chosen
+  b.run.state = transfer_state(*model_, run_.state, *b.model, replaced);
+  b.run.step = run_.step;
+  calm_softened_bodies(*model_, *b.model, b.run.state);
+  SteppingOptions options = options_of(b.source.scene);
+  if (steps == Steps::kept) {
+    options.stepper = run_.stepper;
+    options.pace = Pace::any;
   }
-  run.target_step = 0.0;  // to be found anew
-  run.steps_left = 0;
-  run.memory = {};
-  auto stepping = std::make_unique<Stepping>(options, *model, controls_, run);
-
-  const StepperKind stepper = run_.stepper;
-  if (!other_material) run.stepper_reason = run_.stepper_reason;
-  for (Mover& m : movers)
-    if (m.id == 0) m.id = next_id_++;
-  obstacles_ = std::move(movers);
-  source_ = std::move(source);
-  stepping_ = std::move(stepping);
-  finder_.reset();
-  evaluator_.reset();
-  model_ = std::move(model);
-  model_hash_ = hash;
-  run_ = std::move(run);
-  stepping_->resume_at(run_);
-  warnings_ = warnings_of(source_.scene, report);
-  hold_grabs();
-  remember();
-  note_stepper(stepper);
+  const Controls bare{controls_.gravity, {}};
+  b.stepping = std::make_unique<Stepping>(options, *b.model, bare, b.run);
+  if (steps == Steps::kept) b.run.stepper_reason = run_.stepper_reason;
+  b.stepping->resume_at(b.run);
+  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
+    if (!obstacles_[i].tool) continue;
+    add_obstacle(*b.model, model_->obstacles[i]);
+    b.obstacles.push_back(obstacles_[i]);
+  }
+  take(std::move(b));
 }
+
+// ---- changes of the scene ----
 
 ObstacleHandle World::add(const ObstacleDescription& description) {
   const Busy busy(*this);
@@ -230,7 +206,7 @@ ObstacleHandle World::add(const ObstacleDescription& description) {
   keep_arrays(description, place, given);
   DocValue document = source_.document;
   add_part(document, "obstacle", description.name, table_of(description, place), place);
-  arena_.run([&] { rebuild(changed(std::move(document), std::move(given)), "", false); });
+  arena_.run([&] { rebuild(changed(std::move(document), std::move(given)), "", Steps::kept); });
   return obstacle(description.name);
 }
 
@@ -249,16 +225,19 @@ void World::change(ObstacleHandle handle, const ObstacleDescription& description
   keep_arrays(named, place, given);
   DocValue document = source_.document;
   put(*document.find("obstacle"), name, table_of(named, place));
-  arena_.run([&] { rebuild(changed(std::move(document), std::move(given)), named.name, false); });
+  arena_.run(
+      [&] { rebuild(changed(std::move(document), std::move(given)), named.name, Steps::kept); });
 }
 
 void World::remove(ObstacleHandle handle) {
   const Busy busy(*this);
-  const std::string name = obstacles_[index_of(handle)].name;
+  const std::size_t i = index_of(handle);
+  if (obstacles_[i].tool) return remove_tool(i);
+  const std::string name = obstacles_[i].name;
   DocValue document = source_.document;
   std::erase_if(document.find("obstacle")->entries,
                 [&](const DocEntry& entry) { return entry.key == name; });
-  arena_.run([&] { rebuild(changed(std::move(document), source_.scene.given), "", false); });
+  arena_.run([&] { rebuild(changed(std::move(document), source_.scene.given), "", Steps::kept); });
 }
 
 void World::change(MaterialHandle handle, const MaterialDescription& description) {
@@ -274,166 +253,73 @@ void World::change(MaterialHandle handle, const MaterialDescription& description
     });
   }
   for (DocEntry& entry : values.entries) put(*table, entry.key, std::move(entry.value));
-  arena_.run([&] { rebuild(changed(std::move(document), source_.scene.given), "", true); });
+  arena_.run(
+      [&] { rebuild(changed(std::move(document), source_.scene.given), "", Steps::chosen); });
 }
 
-// ---- time ----
+void World::change(const std::vector<std::string>& overrides) {
+  const Busy busy(*this);
+  DocValue document = source_.document;
+  apply_overrides(document, overrides);
+  arena_.run(
+      [&] { rebuild(changed(std::move(document), source_.scene.given), "", Steps::chosen); });
+}
 
-template <typename F>
-void World::guarded(const F& steps) {
-  const std::int64_t reductions = run_.step_reductions;
+void World::forget_steps() {
+  const Busy busy(*this);
+  DocValue document = source_.document;
+  std::erase_if(document.entries, [](const DocEntry& entry) {
+    return std::find(keys_of_steps.begin(), keys_of_steps.end(), entry.key) != keys_of_steps.end();
+  });
+  arena_.run(
+      [&] { rebuild(changed(std::move(document), source_.scene.given), "", Steps::chosen); });
+}
+
+// ---- other steps of the same model ----
+
+// `state` goes on here, with nothing held yet.
+void World::rechoose(const State& state) {
+  RunState run;
+  run.state = state;
+  run.state.reactions = {};
+  run.step = run_.step;
+  const Controls bare{controls_.gravity, {}};
+  auto stepping = std::make_unique<Stepping>(options_of(source_.scene), *model_, bare, run);
+  stepping->resume_at(run);
+  const StepperKind before = run_.stepper;
+  stepping_ = std::move(stepping);
+  run_ = std::move(run);
+  hold_grabs();
+  good_ = run_;
+  clock_ = run_.state.time;
   ++changes_;
-  try {
-    arena_.run(steps);
-  } catch (const Error& error) {
-    if (error.kind() == ErrorKind::diverged) {
-      run_.state = good_;
-      stepping_->resume_at(run_);
-      clock_ = run_.state.time;
-      note(EventKind::diverged, 1, error.message());
-    }
-    throw;
-  }
-  if (run_.step_reductions > reductions)
-    note(EventKind::step_shortened, run_.step_reductions - reductions,
-         fmt::format("the stable step is {:.4g} s", run_.memory.stable_step));
+  note_stepper(before);
 }
 
-void World::step() {
+void World::choose_steps() {
   const Busy busy(*this);
-  guarded([&] {
-    start_moves(stepping_->prepare(controls_, run_));
-    if (stepping_->step(controls_, run_)) end_frame();
-  });
-  clock_ = run_.state.time;
+  arena_.run([&] { rechoose(run_.state); });
 }
 
-void World::step(double dt) {
+void World::go_on_from(const World& other) {
   const Busy busy(*this);
-  guarded([&] {
-    stepping_->require_stable(controls_, run_, dt);
-    start_moves(dt);
-    stepping_->take_step(controls_, run_, dt);
-    end_frame();
-  });
-  clock_ = run_.state.time;
-}
-
-bool World::advance(double seconds) {
-  const Busy busy(*this);
-  const double end = clock_ + seconds;
-  bool stopped = false;
-  guarded([&] {
-    start_moves(end - run_.state.time);
-    while (true) {
-      const Stepping::Progress progress = stepping_->advance_to(controls_, run_, end, &stop_);
-      if (progress == Stepping::Progress::frame) end_frame();
-      if (progress == Stepping::Progress::arrived) return;
-      stopped = stop_.exchange(false);
-      if (stopped) return;
-    }
-  });
-  const bool there = std::abs(end - run_.state.time) <= 1e-9 * stepping_->frame_interval();
-  clock_ = stopped || there ? run_.state.time : end;
-  return !stopped;
-}
-
-// At the end of a frame, or of a step of a length that the host chose.
-void World::end_frame() {
-  if (run_.state.time - good_.time < between_looks * (1.0 - 1e-9)) return;
-  good_ = run_.state;
-  look_for_inverted_tets();
-}
-
-// Tells when the first tets invert; the next time when some do after none was.
-void World::look_for_inverted_tets() {
-  const Index count = count_inside_out(*model_, run_.state.position);
-  if (count > 0 && last_inside_out_ == 0)
-    note(EventKind::inverted, count, fmt::format("{} tets are inverted", count));
-  last_inside_out_ = count;
-}
-
-// ---- moves ----
-
-void World::set_path(std::size_t obstacle, const Path& path) {
-  Obstacle& o = model_->obstacles[obstacle];
-  o.path = path;
-  if (Pin* pin = pin_of(*model_, o)) pin->path = path;
-}
-
-void World::start_moves(double span) {
-  if (!moves_waiting_ || !(span > 0.0)) return;
-  moves_waiting_ = false;
-  const double now = run_.state.time;
-  const double last = run_.state.last_step;
+  const auto scenes = static_cast<std::ptrdiff_t>(source_.scene.obstacles.size());
+  model_->obstacles.erase(model_->obstacles.begin() + scenes, model_->obstacles.end());
+  obstacles_ = other.obstacles_;
+  pins_ = other.pins_;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (!obstacles_[i].to) continue;
-    Obstacle& o = model_->obstacles[i];
-    lead_path(o.path, o.center, *obstacles_[i].to, last, now, now + span);
-    if (Pin* pin = pin_of(*model_, o)) pin->path = o.path;
-    obstacles_[i].to.reset();
+    const Obstacle& there = other.model_->obstacles[i];
+    if (obstacles_[i].tool)
+      add_obstacle(*model_, there);
+    else
+      set_path(i, there.path);
   }
-  for (std::size_t i = 0; i < pins_.size(); ++i) {
-    if (!pins_[i].to) continue;
-    Path& path = model_->pins[i].path;
-    lead_path(path, path.pivot, *pins_[i].to, last, now, now + span);
-    pins_[i].to.reset();
-  }
-}
-
-void World::move(ObstacleHandle handle, const Pose& pose, bool at_once) {
-  const Busy busy(*this);
-  const std::size_t i = index_of(handle);
-  Obstacle& o = model_->obstacles[i];
-  KeyFrame to;
-  to.move = pose.center - o.center;
-  to.turn = rotation_vector(pose.turn * o.rotation.transpose(), o.path.frame(run_.state.time).turn);
-  obstacles_[i].held = true;
-  if (!at_once) {
-    obstacles_[i].to = to;
-    moves_waiting_ = true;
-    return;
-  }
-  obstacles_[i].to.reset();
-  set_path(i, Path{{to}, o.center, false});
-  for (Index n = o.nodes.begin; n < o.nodes.end; ++n)
-    run_.state.position[uz(n)] = o.path.at(run_.state.time, model_->rest_position[uz(n)]);
-  ++changes_;
-}
-
-void World::move(PinHandle handle, const RigidMotion& motion) {
-  const Busy busy(*this);
-  const std::size_t i = index_of(handle);
-  pins_[i].held = true;
-  pins_[i].to = KeyFrame{0.0, vec(motion.move), vec(motion.turn), Mat3::Identity()};
-  moves_waiting_ = true;
-}
-
-void World::set_gravity(const Vec3& gravity) {
-  const Busy busy(*this);
-  controls_.gravity = gravity;
-  ++changes_;
-}
-
-// ---- events ----
-
-void World::note(EventKind kind, std::int64_t count, std::string text) {
-  if (events_.size() == most_events) events_.pop_front();
-  events_.push_back({kind, run_.state.time, count, std::move(text)});
-}
-
-void World::note_stepper(StepperKind before) {
-  if (run_.stepper == before || run_.stepper_reason.empty()) return;
-  note(EventKind::stepper_changed, 1,
-       fmt::format("{}: {}", word_of(run_.stepper), run_.stepper_reason));
-}
-
-std::vector<Event> World::take_events() {
-  const Busy busy(*this);
-  std::vector<Event> out(std::make_move_iterator(events_.begin()),
-                         std::make_move_iterator(events_.end()));
-  events_.clear();
-  return out;
+  for (std::size_t p = 0; p < pins_.size(); ++p) model_->pins[p].path = other.model_->pins[p].path;
+  moves_waiting_ = other.moves_waiting_;
+  next_id_ = std::max(next_id_, other.next_id_);
+  controls_ = other.controls_;
+  grabs_ = other.grabs_;
+  arena_.run([&] { rechoose(other.run_.state); });
 }
 
 }  // namespace sinew::sim

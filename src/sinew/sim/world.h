@@ -1,22 +1,27 @@
 // What a Simulation (include/sinew/simulation.h) holds: the scene, its Model, where the run stands,
-// and what the host has hold of. Values that come from the host are checked in simulation.cpp.
+// and what its owner has hold of. The command line, the live view and the studies step it through
+// sim/internals.h. Values that come from a host are checked in simulation.cpp.
 #pragma once
 
 #include <sinew/simulation.h>
 
 #include <atomic>
 #include <deque>
+#include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "sinew/base/arena.h"
+#include "sinew/base/clock.h"
 #include "sinew/contact/contact.h"
 #include "sinew/contact/contact_finder.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/obstacle.h"
 #include "sinew/model/state.h"
+#include "sinew/scene/build.h"
 #include "sinew/scene/document.h"
 #include "sinew/scene/scene.h"
 #include "sinew/sim/stepping.h"
@@ -29,24 +34,49 @@ struct Source {
   DocValue document;
 };
 
+struct WorldOptions {
+  int threads = 0;  // as SimulationOptions::threads
+  // How a scene is stepped; asked again whenever steps are chosen. Empty: as the scene says,
+  // without an end.
+  std::function<SteppingOptions(const Scene&)> stepping = {};
+  // Where the run starts; asked once, when the Model stands. Empty: where the scene starts.
+  std::function<RunState(const Model&, const BuildReport&)> start = {};
+};
+
 class World {
  public:
-  World(Source source, int threads);
+  World(Source source, WorldOptions options);
   ~World();
 
   static World& of(const Simulation& simulation);
-  static Simulation simulate(Source source, int threads);
+  static Simulation simulate(Source source, WorldOptions options);
 
   // Error(usage) for a call while another thread is within step() or advance().
   void require_idle() const;
 
-  // ---- time ----
-  void step();
+  // ---- time (progress.cpp) ----
+  // Where a step diverges, the run is put back to where keep() was last called, and Error(diverged)
+  // goes on to the caller.
+
+  // Takes the next step. True: it ends a frame.
+  bool step();
   void step(double dt);
   bool advance(double seconds);
   void interrupt() noexcept { stop_.store(true); }
 
-  // ---- things; the handles of this world ----
+  // Takes steps to the end of the frame under way, one at least; none after `deadline`, and none
+  // once `stop` is set, which also ends a search for a rest state. True: the end is reached.
+  bool advance_frame(const std::atomic<bool>* stop,
+                     Clock::time_point deadline = Clock::time_point::max());
+  // Runs that diverge are put back to here. advance() and the like call it at the end of frames;
+  // who calls advance_frame() calls it as well.
+  void keep();
+  // Adds the frame that has ended to the run's log: its time, and the peaks of all frames.
+  void log_frame();
+  // Throws Error(io).
+  void write_checkpoint(const std::filesystem::path& file) const;
+
+  // ---- handles of this world (handles.cpp) ----
   ObstacleHandle obstacle(std::string_view name) const;
   PinHandle pin(std::string_view name) const;
   MaterialHandle material(std::string_view body, std::string_view region) const;
@@ -55,34 +85,73 @@ class World {
   std::size_t index_of(PinHandle handle) const;
   std::size_t index_of(GrabHandle handle) const;
   std::size_t index_of(MaterialHandle handle) const;
+  // What `handle` names in the world that this one went on from.
+  template <typename Kind>
+  Handle<Kind> counterpart(Handle<Kind> handle) const {
+    return {serial_, handle.id_};
+  }
 
+  // ---- changes that build the model anew (world.cpp) ----
   ObstacleHandle add(const ObstacleDescription& description);
   void change(ObstacleHandle handle, const ObstacleDescription& description);
-  void remove(ObstacleHandle handle);
+  void remove(ObstacleHandle handle);  // a tool without building
   void change(MaterialHandle handle, const MaterialDescription& description);
+  // Other values of the same bodies, pins and obstacles, as overrides of --set; steps are chosen
+  // anew and counters start again.
+  void change(const std::vector<std::string>& overrides);
+  // The scene says nothing of its steps any more.
+  void forget_steps();
+  // Back to the start of the scene with the values as they are. Nothing is held, no tool is there,
+  // and what was moved follows the scene's paths again.
+  void reset();
+
+  // Chooses the steps anew, without another model, and goes on from here; counters start again.
+  void choose_steps();
+  // Goes on from where another world of the same nodes and parts is, with what it holds: grabs and
+  // tools. Of a new world, which is of no use where this throws.
+  void go_on_from(const World& other);
+
+  // ---- what moves (moves.cpp) ----
   void set_gravity(const Vec3& gravity);
-
-  // Over the next step or advance, or at once.
-  void move(ObstacleHandle handle, const Pose& pose, bool at_once);
+  // To the pose over the next step or advance, at once, or over the next `seconds` > 0.
+  void move(ObstacleHandle handle, const Pose& pose);
+  void place(ObstacleHandle handle, const Pose& pose);
+  void lead(ObstacleHandle handle, const Pose& pose, double seconds);
   void move(PinHandle handle, const RigidMotion& motion);
+  // A tool is a soft sphere that belongs to the owner, not to the scene. It stands behind the
+  // scene's obstacles, comes and goes without another model, and stays when the model changes.
+  ObstacleHandle add_tool(const std::string& name, const Vec3& center, double radius,
+                          double stiffness);
+  // Gives a tool another radius [m] and stiffness [N/m3], at once.
+  void reshape(ObstacleHandle handle, double radius, double stiffness);
 
-  GrabHandle grab(Index node, double radius);
+  // ---- grabs (grabs.cpp) ----
+  // Holds the nodes of the node's body within `radius` [m] of it, as a hand at `target` that pulls
+  // nothing yet.
+  GrabHandle grab(Index node, double radius, const Vec3& target);
   void move(GrabHandle handle, const Vec3& target);
   void release(GrabHandle handle);
   std::vector<GrabHandle> grabs() const;
   Vec3 target(GrabHandle handle) const;
-  Vec3 pull(GrabHandle handle) const;  // on the tissue [N]
+  Vec3 held_at(GrabHandle handle) const;  // where `target` would pull nothing [m]
+  Vec3 pull(GrabHandle handle) const;     // on the tissue [N]
 
-  // ---- states ----
+  // ---- states (saved_state.cpp) ----
   std::string save() const;
   void restore(const std::string& bytes);
 
   std::vector<Event> take_events();
 
   const Scene& scene() const { return source_.scene; }
+  // The scene with gravity as it is now.
+  Scene current_scene() const;
+  const BuildReport& report() const { return report_; }
   const Model& model() const { return *model_; }
+  // The run; its owner keeps frame_times, start_energy and wall_seconds.
+  RunState& run() { return run_; }
   const RunState& run() const { return run_; }
   const State& state() const { return run_.state; }
+  Stepping& stepping() { return *stepping_; }
   const Stepping& stepping() const { return *stepping_; }
   const std::vector<std::string>& warnings() const { return warnings_; }
   const std::vector<BodyInfo>& bodies() const { return bodies_; }
@@ -90,21 +159,23 @@ class World {
   const Controls& controls() const { return controls_; }
   Index body_nodes() const { return model_->body_node_count(); }
 
-  // At the positions as they are (readings.cpp).
+  // ---- readings, at the positions as they are (readings.cpp) ----
   const std::vector<Vec3>& forces();
-  Index inverted_tets() const;
   Wrench wrench(std::size_t obstacle, const Vec3& about);
   Wrench pin_wrench(std::size_t pin, const Vec3& about);
   void contacts(std::size_t obstacle, std::vector<ContactPoint>& out);
   double depth(std::size_t obstacle);
+  // Null where nothing but the ground and soft obstacles can touch.
+  ContactFinder* finder();
 
  private:
-  // Something that a host has moved, or may: its path is written in front of every step.
+  // Something that the owner has moved, or may: its path is written in front of every step.
   struct Mover {
     std::uint64_t id = 0;
     std::string name;
-    bool held = false;           // by the host: its path is no longer the scene's
+    bool held = false;           // by the owner: its path is no longer the scene's
     std::optional<KeyFrame> to;  // where the next step or advance takes it
+    bool tool = false;           // of the owner alone, behind the scene's obstacles
   };
   struct Patch {  // what a grab holds
     std::uint64_t id = 0;
@@ -114,6 +185,18 @@ class World {
   struct Part {  // a body or region that has a material
     std::string body, region;
   };
+  // A model that stands, with what belongs to it, before it takes the place of the one before: what
+  // cannot be built leaves the simulation as it was.
+  struct Built {
+    Source source;
+    BuildReport report;
+    std::unique_ptr<Model> model;
+    std::uint64_t hash = 0;
+    std::unique_ptr<Stepping> stepping;
+    RunState run;
+    std::vector<Mover> obstacles;
+  };
+  enum class Steps { kept, chosen };  // of a model that goes on
   // One call at a time changes a simulation.
   class Busy {
    public:
@@ -129,32 +212,39 @@ class World {
     std::atomic<bool>& busy_;
   };
 
-  void build(Source source);
-  void rebuild(Source source, const std::string& replaced, bool other_material);
-  State carry_over(const Model& after, const std::string& replaced) const;
+  SteppingOptions options_of(const Scene& scene) const;
+  static Built build(Source source);
+  void take(Built built);
+  void start(Source source);
+  void rebuild(Source source, const std::string& replaced, Steps steps);
+  void rechoose(const State& state);
   Source changed(DocValue document, GivenMeshes given) const;
   void remember();
-  // Runs `steps`, and puts the state back where it diverges.
+  // Runs `steps`, and puts the run back where it diverges.
   template <typename F>
   void guarded(const F& steps);
   void end_frame();
   void look_for_inverted_tets();
   void start_moves(double span);
+  void remove_tool(std::size_t obstacle);
   void set_path(std::size_t obstacle, const Path& path);
+  KeyFrame motion_to(std::size_t obstacle, const Pose& pose) const;
   void note(EventKind kind, std::int64_t count, std::string text);
   void note_stepper(StepperKind before);
   void hold_grabs();
   void find_contacts_now();
 
   const std::uint64_t serial_;
+  const WorldOptions options_;
   Arena arena_;
   Source source_;
+  BuildReport report_;
   std::unique_ptr<Model> model_;
   std::uint64_t model_hash_ = 0;
   std::unique_ptr<Stepping> stepping_;
   Controls controls_;
   RunState run_;
-  State good_;          // at the end of a frame: where a run that diverges is put back to
+  RunState good_;       // where a run that diverges is put back to
   double clock_ = 0.0;  // to where advance() was asked for [s]
   std::vector<std::string> warnings_;
   std::vector<BodyInfo> bodies_;
@@ -167,7 +257,7 @@ class World {
   std::vector<Part> parts_;
 
   bool moves_waiting_ = false;
-  Index last_inside_out_ = 0;  // tets, when last counted
+  std::int64_t last_inverted_ = 0;  // tets, when last counted
 
   std::deque<Event> events_;
   std::atomic<bool> stop_ = false;

@@ -104,9 +104,10 @@ ConvergeResult converge(const std::filesystem::path& file, const std::vector<std
     };
     result.stopped = !experiment.run(options.stop, on_share);
     if (result.stopped) break;
-    result.levels.push_back({level, experiment.model().body_node_count(),
-                             experiment.model().tet_count(), experiment.inverted_tets(),
-                             experiment.seconds()});
+    result.levels.push_back(
+        {level, experiment.model().body_node_count(), experiment.model().tet_count(),
+         static_cast<Index>(count_inverted(experiment.model(), experiment.positions())),
+         experiment.seconds()});
     const std::vector<ProbeReading> probes = experiment.probes();
     for (std::size_t p = 0; p < probes.size(); ++p)
       displacement[p].push_back(probes[p].displacement);

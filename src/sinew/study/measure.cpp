@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <numbers>
+#include <utility>
 
+#include "sinew/base/clock.h"
 #include "sinew/forces/terms.h"
-#include "sinew/mesh/tet_mesh.h"
-#include "sinew/scene/build.h"
 #include "sinew/scene/keys.h"
 #include "sinew/sim/obstacle_reading.h"
 #include "sinew/solver/modes.h"
@@ -48,28 +47,31 @@ Vec3 mass_mean(const Model& model, const Body& body, const std::vector<Vec3>& va
 
 }  // namespace
 
-Experiment::Experiment(const Scene& scene) : scene_(scene), model_(build_model(scene)) {
-  run_.state = initial_state(model_);
+Experiment::Experiment(const Scene& scene)
+    : simulation_(
+          sim::simulate(scene, {.stepping = [](const Scene& s) { return stepping_options(s); }})),
+      world_(sim::internals(simulation_)),
+      model_(world_.model()),
+      run_(std::as_const(world_).run()) {
   lowest_.assign(model_.probes.size(), Vec3::Zero());
   for (const Body& body : model_.bodies)
     flight_.push_back({mass_mean(model_, body, run_.state.position)});
 }
 
 bool Experiment::run(const std::atomic<bool>* stop, const std::function<void(double)>& on_share) {
-  const auto start = std::chrono::steady_clock::now();
-  const Controls controls = initial_controls(model_);
-  Stepping stepping(scene_, model_, controls, run_);
-  while (run_.frame < stepping.frame_count()) {
-    if (!stepping.advance_frame(controls, run_, stop)) return false;
+  const Clock::time_point start = Clock::now();
+  const std::int64_t frames = world_.stepping().frame_count();
+  while (run_.frame < frames) {
+    if (!world_.advance_frame(stop)) return false;
     const std::vector<ProbeReading> readings = probes();
     for (std::size_t p = 0; p < readings.size(); ++p)
       lowest_[p] = lowest_[p].cwiseMin(readings[p].displacement);
     watch_flight();
-    if (on_share) on_share(run_.state.time / scene_.duration);
-    if (stop != nullptr && stop->load() && run_.frame < stepping.frame_count()) return false;
+    if (on_share) on_share(run_.state.time / world_.scene().duration);
+    if (stop != nullptr && stop->load() && run_.frame < frames) return false;
   }
-  force_ = stepping.forces().evaluate(controls, run_.state).force;
-  seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  force_ = world_.stepping().forces().evaluate(world_.controls(), run_.state).force;
+  seconds_ = seconds_since(start);
   return true;
 }
 
@@ -82,21 +84,6 @@ void Experiment::watch_flight() {
         flight.lowest.cwiseMin(mass_mean(model_, body, run_.state.position) - flight.start);
     if (run_.contacts > 0) flight.leave = mass_mean(model_, body, run_.state.half_velocity);
   }
-}
-
-Index Experiment::inverted_tets() const {
-  return static_cast<Index>(
-      std::count_if(model_.tets.begin(), model_.tets.end(),
-                    [&](const Tet& t) { return signed_volume(run_.state.position, t) <= 0.0; }));
-}
-
-double Experiment::volume_ratio() const {
-  double rest = 0.0, now = 0.0;
-  for (const Body& body : model_.bodies) {
-    rest += body.rest_volume;
-    now += body.rest_volume * sinew::volume_ratio(model_, body, run_.state.position);
-  }
-  return now / rest;
 }
 
 // The pin balances the pull of the material: compute_forces leaves exactly that on pinned nodes.
@@ -194,11 +181,11 @@ double Experiment::measure(const Quantity& q) {
     case Kind::frequency:
       return frequency(q.mode, q.axis);
     case Kind::volume:
-      return volume_ratio();
+      return volume_ratio(model_, run_.state.position);
     case Kind::obstacle: {
       const Obstacle& obstacle = named(model_.obstacles, q, "obstacle");
       const auto o = static_cast<std::size_t>(&obstacle - model_.obstacles.data());
-      return read_obstacles(model_, run_.state)[o].force[axis];
+      return read_obstacles(model_, run_.state, world_.finder())[o].force[axis];
     }
     case Kind::contact_time:
       return contact_time_;

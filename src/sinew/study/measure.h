@@ -8,19 +8,19 @@
 #include <vector>
 
 #include "sinew/model/model.h"
-#include "sinew/run/summary.h"
 #include "sinew/scene/scene.h"
-#include "sinew/sim/stepping.h"
+#include "sinew/sim/internals.h"
+#include "sinew/sim/readings.h"
 #include "sinew/study/case.h"
 
 namespace sinew::study {
 
 class Experiment {
  public:
-  // Builds the scene's model; the scene must outlive the experiment. Throws Error(input).
+  // Throws what sim::simulate throws.
   explicit Experiment(const Scene& scene);
 
-  // Runs to the end. Returns false if `stop` was set before. Throws Error, see Stepping.
+  // Runs to the end. Returns false if `stop` was set before. Throws Error(diverged).
   bool run(const std::atomic<bool>* stop, const std::function<void(double)>& on_share = {});
 
   // After run(). Throws Error(input) if the scene has no probe or pin of that name.
@@ -28,10 +28,9 @@ class Experiment {
 
   const Model& model() const { return model_; }
   const RunState& state() const { return run_; }
-  std::vector<ProbeReading> probes() const { return read_probes(model_, run_.state.position); }
+  const std::vector<Vec3>& positions() const { return run_.state.position; }
+  std::vector<ProbeReading> probes() const { return read_probes(model_, positions()); }
   double seconds() const { return seconds_; }  // of run()
-  Index inverted_tets() const;
-  double volume_ratio() const;  // of all bodies
 
  private:
   Vec3 pin_force(const Pin& pin) const;
@@ -41,9 +40,10 @@ class Experiment {
   double frequency(int mode, const std::string& axis);
   void watch_flight();
 
-  const Scene& scene_;
-  Model model_;
-  RunState run_;
+  Simulation simulation_;
+  sim::World& world_;  // its inside, and of that:
+  const Model& model_;
+  const RunState& run_;
   std::vector<Vec3> force_;  // total at the end [N] (nodes)
   double seconds_ = 0.0;
   std::vector<Vec3> lowest_;  // smallest displacement over the frames [m] (probes)

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 
+#include "sinew/base/clock.h"
 #include "sinew/scene/laws.h"
 #include "sinew/study/measure.h"
 
@@ -86,8 +86,9 @@ bool run_one(const Plan& plan, const SuiteOptions& options, CaseResult& result) 
     trial.nodes = experiment->model().body_node_count();
     trial.tets = experiment->model().tet_count();
     if (!experiment->run(options.stop)) return false;
-    trial.inverted_tets = experiment->inverted_tets();
-    trial.volume_ratio = experiment->volume_ratio();
+    trial.inverted_tets =
+        static_cast<Index>(count_inverted(experiment->model(), experiment->positions()));
+    trial.volume_ratio = volume_ratio(experiment->model(), experiment->positions());
     trial.residual = experiment->state().residual;
     trial.seconds = experiment->seconds();
   } catch (const Error& error) {
@@ -157,7 +158,7 @@ bool SuiteResult::holds() const {
 }
 
 SuiteResult run_suite(const std::vector<Case>& cases, const SuiteOptions& options) {
-  const auto start = std::chrono::steady_clock::now();
+  const Clock::time_point start = Clock::now();
   SuiteResult result;
   std::vector<Plan> plans;
   for (const Case& c : cases)
@@ -180,7 +181,7 @@ SuiteResult run_suite(const std::vector<Case>& cases, const SuiteOptions& option
     ++done;
   }
   std::erase_if(result.cases, [](const CaseResult& r) { return r.trials.empty(); });
-  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result.seconds = seconds_since(start);
   return result;
 }
 

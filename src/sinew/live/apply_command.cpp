@@ -1,4 +1,4 @@
-// What a live simulation does when it is told something.
+// What a session does with a command.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,9 +10,8 @@
 
 #include "sinew/base/error.h"
 #include "sinew/forces/terms.h"
-#include "sinew/live/simulation.h"
+#include "sinew/live/session.h"
 #include "sinew/run/recorder.h"
-#include "sinew/scene/document.h"
 
 namespace sinew::live {
 namespace {
@@ -43,67 +42,54 @@ void require_point(const Vec3& point) {
   }
 }
 
-Scene with(const Scene& scene, const std::vector<std::string>& overrides) {
-  return parse_scene(scene.document, scene.file, scene.base, overrides);
-}
-
-// The scene without what it says of its steps.
-Scene without_steps(const Scene& scene) {
-  DocValue root = parse_document(scene.document, scene.file);
-  std::erase_if(root.entries, [](const DocEntry& entry) {
-    return std::find(keys_of_steps.begin(), keys_of_steps.end(), entry.key) != keys_of_steps.end();
-  });
-  Scene out = parse_scene(write_document(root), scene.file, scene.base);
-  out.name = scene.name;
-  return out;
-}
-
 }  // namespace
 
-void Simulation::act(const Play& c) {
+void Session::act(const Play& c) {
   running_ = c.running;
 }
 
-void Simulation::act(const Advance& c) {
+void Session::act(const Advance& c) {
   running_ = false;
   if (!c.frame) return take_step();
   while (!advance(Clock::now() + std::chrono::seconds(1)) && error_.empty()) {
   }
 }
 
-void Simulation::act(const Reset&) {
-  let_go();
-  rebuild(scene_, nullptr);
+void Session::act(const Reset&) {
+  world().reset();
+  grabs_ = {};
+  ball_ = {};
+  changed();
 }
 
 // Nothing of the scene before is touched until the new one stands.
-void Simulation::act(const Load& c) {
-  const Hands hands = std::exchange(hands_, {});
-  const Ball ball = std::exchange(ball_, {});
+void Session::act(const Load& c) {
+  const bool behind = std::exchange(fell_behind_, false);
   try {
-    rebuild(c.scene, nullptr);
+    simulation_ = simulate(c.scene);
   } catch (...) {
-    hands_ = hands;
-    ball_ = ball;
+    fell_behind_ = behind;
     throw;
   }
   running_ = false;
-  fell_behind_ = false;
+  grabs_ = {};
+  ball_ = {};
   other_.reset();
   compare_.clear();
   ++opened_;
+  changed();
   show({}, false);
 }
 
-void Simulation::show(const Cut& cut, bool springs) {
+void Session::show(const Cut& cut, bool springs) {
   cut_ = cut;
   springs_ = springs;
-  topology_ = std::make_shared<Topology>(make_topology(*model_, ++revision_, cut_, springs_));
+  topology_ = std::make_shared<Topology>(make_topology(model(), ++revision_, cut_, springs_));
   if (other_) other_->topology_ = topology_;
   remember_parameters();
 }
 
-void Simulation::act(const SetCut& c) {
+void Session::act(const SetCut& c) {
   require_point(c.cut.normal);
   if (!std::isfinite(c.cut.offset)) {
     throw Error(ErrorKind::usage, "the offset is no finite number", "give it in metres");
@@ -111,13 +97,12 @@ void Simulation::act(const SetCut& c) {
   show(c.cut, springs_);
 }
 
-void Simulation::act(const SetSprings& c) {
+void Session::act(const SetSprings& c) {
   show(cut_, c.shown);
 }
 
-void Simulation::act(const SaveState& c) {
-  c.done(format_frame(*model_, run_, stepping_->forces().evaluate(controls_, run_.state).force,
-                      io::VtuEncoding::zlib));
+void Session::act(const SaveState& c) {
+  c.done(format_frame(model(), world().run(), force(), io::VtuEncoding::zlib));
 }
 
 namespace {
@@ -144,40 +129,37 @@ std::vector<std::string> material_overrides(const Scene& scene, const SetMateria
 }
 }  // namespace
 
-void Simulation::act(const SetMaterial& c) {
+void Session::act(const SetMaterial& c) {
   require_key(material_keys, c.key);
   require_plain(c.value);
-  change(material_overrides(scene_, c));
+  change(material_overrides(world().scene(), c));
 }
 
-void Simulation::act(const SetStepping& c) {
+void Session::act(const SetStepping& c) {
   require_key(keys_of_steps, c.key);
   require_plain(c.value);
   if (c.key != "stepper" || c.value != "live") return change({c.key + "=" + c.value});
-  const State keep = run_.state;
   fell_behind_ = false;
-  rebuild(without_steps(scene_), &keep);
+  world().forget_steps();
+  changed();
 }
 
-void Simulation::act(const SetGravity& c) {
+void Session::act(const SetGravity& c) {
   if (!c.gravity.allFinite() || c.gravity.norm() > 1e4) {
     throw Error(ErrorKind::usage, "gravity is not within 1e4 m/s2", "the earth's is 9.81 m/s2");
   }
-  // The forces take it from the model in every step: nothing has to be built for it.
-  scene_ = with(scene_,
-                {fmt::format("gravity=[{},{},{}]", c.gravity.x(), c.gravity.y(), c.gravity.z())});
-  controls_.gravity = c.gravity;
+  world().set_gravity(c.gravity);
   remember_parameters();
 }
 
-void Simulation::act(const SetTimeScale& c) {
+void Session::act(const SetTimeScale& c) {
   if (!(c.scale >= 1e-3 && c.scale <= 100.0)) {
     throw Error(ErrorKind::usage, "the time scale is not from 0.001 to 100", "1 is real time");
   }
   time_scale_ = c.scale;
 }
 
-void Simulation::act(const SetQuantity& c) {
+void Session::act(const SetQuantity& c) {
   quantity_ = c.quantity;
 }
 
@@ -188,7 +170,7 @@ void require_hand(int hand) {
 }
 }  // namespace
 
-void Simulation::act(const Grab& c) {
+void Session::act(const Grab& c) {
   require_hand(c.hand);
   require_point(c.point);
   if (c.node < 0 || uz(c.node) >= topology_->node.size()) {
@@ -200,50 +182,51 @@ void Simulation::act(const Grab& c) {
   }
   const double usual = std::max(1.7 * static_cast<double>(topology_->edge),
                                 0.04 * static_cast<double>(topology_->diagonal));
-  hands_.grab(*model_, controls_, run_.state, c.hand, topology_->node[uz(c.node)], c.point,
+  grabs_.grab(world(), c.hand, topology_->node[uz(c.node)], c.point,
               c.radius > 0.0 ? c.radius : usual);
 }
 
-void Simulation::act(const Drag& c) {
+void Session::act(const Drag& c) {
   require_hand(c.hand);
   require_point(c.point);
-  hands_.drag(*model_, controls_, run_.state, c.hand, c.point, size());
+  grabs_.drag(world(), c.hand, c.point, size());
 }
 
-void Simulation::act(const Release& c) {
+void Session::act(const Release& c) {
   require_hand(c.hand);
-  hands_.release(*model_, controls_, run_.state, c.hand);
+  grabs_.release(world(), c.hand);
 }
 
-void Simulation::act(const MoveBall& c) {
+void Session::act(const MoveBall& c) {
   require_point(c.point);
   if (!(c.radius >= 0.0 && c.radius <= 10.0 * size())) {
     throw Error(ErrorKind::usage, "the radius is not from 0 to ten times the body's size",
                 "0 for the usual one");
   }
   const double usual = ball_.is_there() ? ball_.radius() : 0.1 * size();
-  ball_.move(*model_, run_.state, c.point, c.radius > 0.0 ? c.radius : usual, size());
+  ball_.move(world(), c.point, c.radius > 0.0 ? c.radius : usual);
 }
 
-void Simulation::act(const RemoveBall&) {
-  ball_.remove(*model_, run_.state);
+void Session::act(const RemoveBall&) {
+  ball_.remove(world());
 }
 
 // The scene with other values, going on from where the nodes are.
-void Simulation::change(const std::vector<std::string>& overrides) {
+void Session::change(const std::vector<std::string>& overrides) {
   fell_behind_ = false;
-  const State keep = run_.state;
-  const Scene changed = with(scene_, overrides);
   try {
-    rebuild(changed, &keep);
+    world().change(overrides);
   } catch (const Error& e) {
     // A given step that the new material is too stiff for is no reason to refuse the material.
     const bool asked = std::any_of(overrides.begin(), overrides.end(), [](const std::string& o) {
       return o.starts_with("dt=") || o.starts_with("substeps=");
     });
     if (e.kind() != ErrorKind::unstable || asked) throw;
-    rebuild(with(changed, {"dt=auto"}), &keep);
+    std::vector<std::string> with_dt = overrides;
+    with_dt.emplace_back("dt=auto");
+    world().change(with_dt);
   }
+  changed();
 }
 
 }  // namespace sinew::live

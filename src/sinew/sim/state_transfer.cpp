@@ -1,5 +1,6 @@
-#include "sinew/sim/carry_over.h"
+#include "sinew/sim/state_transfer.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace sinew {
@@ -46,7 +47,51 @@ Motion motion_of(const Model& model, const Body& body, const State& state) {
   return m;
 }
 
+// Nodes in front of those of obstacles that are meshes.
+Index own_nodes(const Model& model) {
+  Index count = model.node_count();
+  for (const Obstacle& o : model.obstacles) count -= o.nodes.size();
+  return count;
+}
+
 }  // namespace
+
+const Obstacle* obstacle_named(const Model& model, const std::string& name) {
+  const auto found = std::find_if(model.obstacles.begin(), model.obstacles.end(),
+                                  [&](const Obstacle& o) { return o.name == name; });
+  return found == model.obstacles.end() ? nullptr : &*found;
+}
+
+// Nodes of obstacles that are meshes come last: those that stay keep their places, the others are
+// where their paths begin.
+State transfer_state(const Model& before, const State& old, const Model& after,
+                     const std::string& replaced) {
+  State s = initial_state(after);
+  const auto common = own_nodes(after);
+  std::copy_n(old.position.begin(), common, s.position.begin());
+  std::copy_n(old.half_velocity.begin(), common, s.half_velocity.begin());
+  s.last_step = old.last_step;
+  s.time = old.time;
+  s.step = old.step;
+  s.energy = old.energy;
+  s.obstacle_force.assign(after.obstacles.size(), Vec3::Zero());
+  for (std::size_t o = 0; o < after.obstacles.size(); ++o) {
+    const Obstacle& now = after.obstacles[o];
+    const Obstacle* known = now.name == replaced ? nullptr : obstacle_named(before, now.name);
+    if (known != nullptr) {
+      const auto at = static_cast<std::size_t>(known - before.obstacles.data());
+      if (at < old.obstacle_force.size()) s.obstacle_force[o] = old.obstacle_force[at];
+      std::copy_n(old.position.begin() + known->nodes.begin, known->nodes.size(),
+                  s.position.begin() + now.nodes.begin);
+      std::copy_n(old.half_velocity.begin() + known->nodes.begin, known->nodes.size(),
+                  s.half_velocity.begin() + now.nodes.begin);
+    } else {
+      for (Index i = now.nodes.begin; i < now.nodes.end; ++i)
+        s.position[uz(i)] = now.path.at(s.time, after.rest_position[uz(i)]);
+    }
+  }
+  return s;
+}
 
 void calm_softened_bodies(const Model& before, const Model& after, State& state) {
   for (std::size_t b = 0; b < after.bodies.size(); ++b) {

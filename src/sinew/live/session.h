@@ -1,35 +1,38 @@
-// A simulation that is watched and changed while it runs: no thread, no socket, no clock but for
+// A simulation that is watched and changed while it runs: what the view shows of a World
+// (sim/world.h), and the commands that change it. It has no thread, no socket, and no clock but for
 // its own speed. docs/view.md. Runner (runner.h) gives it a thread.
 #pragma once
 
 #include <atomic>
-#include <chrono>
 #include <memory>
+#include <string>
+#include <vector>
 
-#include "sinew/contact/contact_finder.h"
 #include "sinew/live/ball.h"
 #include "sinew/live/command.h"
 #include "sinew/live/frame.h"
-#include "sinew/live/hands.h"
-#include "sinew/sim/stepping.h"
+#include "sinew/live/grabs.h"
+#include "sinew/sim/internals.h"
 
 namespace sinew::live {
 
 // Frames that are shown per simulated second.
 inline constexpr double frames_per_second = 60.0;
 
-class Simulation {
+class Session {
  public:
   // Builds the scene's model; paused. A scene with stepper = "static" takes implicit steps. Throws
-  // what build_model and Stepping throw.
-  explicit Simulation(const Scene& scene);
+  // what sim::simulate throws.
+  explicit Session(const Scene& scene) : Session(scene, nullptr) {}
+  Session(const Session&) = delete;
+  Session& operator=(const Session&) = delete;
 
   // Does what is asked. Throws Error(input, usage) and changes nothing where a value cannot be used
-  // or a node or hand does not exist; what Load throws is that of the scene's build.
+  // or a node or hand does not exist; Load throws what the constructor throws.
   void apply(const Command& command);
 
   bool running() const { return running_; }
-  double time() const { return run_.state.time; }
+  double time() const { return state().time; }
   double time_scale() const { return time_scale_; }
 
   // Takes steps to the end of the frame under way, but none after `deadline` or once `hurry` is
@@ -44,9 +47,8 @@ class Simulation {
   Frame frame();
   std::shared_ptr<const Topology> topology() const { return topology_; }
   std::shared_ptr<const Parameters> parameters() const { return parameters_; }
-  const Model& model() const { return *model_; }
-  const State& state() const { return run_.state; }
-  const Scene& scene() const { return scene_; }
+  const Model& model() const { return world().model(); }
+  const State& state() const { return world().state(); }
 
   // Shown by status() until the next command that succeeds.
   void report(const Error& error);
@@ -78,8 +80,14 @@ class Simulation {
   void act(const SetCompare& c);
   void act(const SaveState& c);
 
+  // `leader`: the session whose steps this one takes, to be compared with it.
+  Session(const Scene& scene, const Session* leader);
+
+  sim::World& world() { return sim::internals(simulation_); }
+  const sim::World& world() const { return sim::internals(simulation_); }
+  Simulation simulate(const Scene& scene) const;
   void change(const std::vector<std::string>& overrides);
-  void rebuild(const Scene& scene, const State* keep);
+  void changed();
   SteppingOptions options_for(const Scene& scene) const;
   void remember_parameters();
   void show(const Cut& cut, bool springs);
@@ -88,39 +96,37 @@ class Simulation {
   bool catch_up(Clock::time_point deadline, const std::atomic<bool>* hurry);
   void note_pair();
   void keep_pace();
+  // Of all terms at the state [N] (nodes).
+  const std::vector<Vec3>& force() {
+    return world().stepping().forces().evaluate(world().controls(), state()).force;
+  }
   double size() const { return static_cast<double>(topology_->diagonal); }
   bool steps(Clock::time_point deadline, const std::atomic<bool>* hurry, bool only_one);
   double capacity() const;
   std::string limiting() const;
 
-  Scene scene_;
-  std::unique_ptr<Model> model_;
-  Controls controls_;
-  std::unique_ptr<ContactFinder> finder_;  // of what frames mark; null: nothing but the ground can
-  std::unique_ptr<Stepping> stepping_;
-  RunState run_;
-  State good_;  // where the last frame ended
+  const Session* const leader_;
+  bool fell_behind_ = false;  // with explicit steps, since a value was changed
+  Simulation simulation_;     // is stepped as options_for says of the two above
   std::shared_ptr<const Topology> topology_;
   std::shared_ptr<const Parameters> parameters_;
-  Hands hands_;
+  Grabs grabs_;
   Ball ball_;
   Cut cut_;
   bool springs_ = false;
   Quantity quantity_ = Quantity::displacement;
   double time_scale_ = 1.0;
   bool running_ = false;
-  bool fell_behind_ = false;  // with explicit steps, since a value was changed
   std::uint64_t frames_ = 0;
   std::uint32_t revision_ = 0, opened_ = 0, changes_ = 0, errors_ = 0;
   std::string error_;
   Speed speed_, last_speed_;
 
-  // The body that this one is compared with: a simulation of the same scene with another law.
-  std::unique_ptr<Simulation> other_;
-  const Simulation* leader_ = nullptr;  // of the other: the one whose steps it takes
-  std::string compare_;                 // that law's name
-  bool ahead_ = false;                  // this one's frame is finished, the other's is not
-  struct Pair {                         // positions of both at the same time [m] (nodes)
+  // The body that this one is compared with: a session of the same scene with another law.
+  std::unique_ptr<Session> other_;
+  std::string compare_;  // that law's name
+  bool ahead_ = false;   // this one's frame is finished, the other's is not
+  struct Pair {          // positions of both at the same time [m] (nodes)
     std::vector<Vec3> mine, others;
   };
   Pair pair_;

@@ -1,4 +1,4 @@
-#include "sinew/live/look.h"
+#include "sinew/live/build_frame.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,10 +8,12 @@
 
 namespace sinew::live {
 namespace {
+
 // What is no further apart than this share of the bodies' size touches.
 constexpr double touch = 1e-5;
 
 constexpr double bears = 0.33;  // of a contact's push: one corner of a triangle does
+
 }  // namespace
 
 std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& nodes) {

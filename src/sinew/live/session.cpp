@@ -1,0 +1,277 @@
+#include "sinew/live/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "sinew/base/error.h"
+#include "sinew/forces/springs.h"
+#include "sinew/live/build_frame.h"
+#include "sinew/sim/choose_stepper.h"
+#include "sinew/sim/obstacle_reading.h"
+#include "sinew/sim/readings.h"
+
+namespace sinew::live {
+namespace {
+
+// What is shown of an obstacle.
+Parameters::Rigid rigid_of(const Model& model, const Obstacle& o, const std::string& shape) {
+  Parameters::Rigid out{o.name, o.radius, shape, o.half, {}, {}};
+  if (o.shape == ObstacleShape::capsule) {
+    out.half = Vec3(o.radius, o.radius, o.half.z());
+    out.radius += o.half.z();
+  }
+  if (o.shape == ObstacleShape::box) out.radius = o.half.norm();
+  const Pose rest{o.center, o.rotation};
+  for (Index i = o.nodes.begin; i < o.nodes.end; ++i) {
+    out.vertices.push_back(rest.own(model.rest_position[uz(i)]));
+    out.radius = std::max(out.radius, out.vertices.back().norm());
+  }
+  for (const Triangle& t : o.triangles)
+    out.triangles.push_back({t[0] - o.nodes.begin, t[1] - o.nodes.begin, t[2] - o.nodes.begin});
+  return out;
+}
+
+// How much is measured before the speed is said anew [s] of wall time.
+constexpr double speed_window = 0.5;
+
+// Explicit steps that have made less than this share of real time have fallen behind [-].
+constexpr double slow_pace = 0.7;
+
+}  // namespace
+
+Session::Session(const Scene& scene, const Session* leader)
+    : leader_(leader), simulation_(simulate(scene)) {
+  ++opened_;
+  show({}, false);
+}
+
+Simulation Session::simulate(const Scene& scene) const {
+  sim::WorldOptions options;
+  options.stepping = [this](const Scene& s) { return options_for(s); };
+  return sim::simulate(scene, std::move(options));
+}
+
+void Session::apply(const Command& command) {
+  if (!std::holds_alternative<Drag>(command)) error_.clear();
+  std::visit([&](const auto& c) { act(c); }, command);
+  if (other_) tell_other(command);
+}
+
+void Session::report(const Error& error) {
+  error_ = error.what();
+  ++errors_;
+}
+
+void Session::let_go() {
+  grabs_.release_all(world());
+  ball_.remove(world());
+}
+
+// Frames of the view's own length, for ever. A scene that names no steps takes those that keep up
+// with the clock, and a compared body the same as the first.
+SteppingOptions Session::options_for(const Scene& scene) const {
+  SteppingOptions o = stepping_options(scene);
+  o.duration = no_limit;
+  o.interval = 1.0 / frames_per_second;
+  o.budget.reset();
+  if (o.stepper == StepperKind::rest) o.stepper = StepperKind::implicit;
+  if (scene.names_steps) return o;
+  if (leader_ == nullptr) {
+    o.pace = fell_behind_ ? Pace::missed : Pace::wanted;
+  } else if (leader_->world().run().stepper == StepperKind::implicit) {
+    o.pace = Pace::missed;
+  }
+  return o;
+}
+
+// After the model or its steps are other ones.
+void Session::changed() {
+  ball_.hold(world());
+  ahead_ = false;
+  speed_ = last_speed_ = {};
+  remember_parameters();
+}
+
+void Session::remember_parameters() {
+  const Scene scene = world().current_scene();
+  auto p = std::make_shared<Parameters>();
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) {
+    const SceneBody& body = scene.bodies[b];
+    const auto& names = model().bodies[b].regions;
+    const bool has_rest = std::find(names.begin(), names.end(), "rest") != names.end();
+    if (body.regions.empty() || has_rest) p->parts.push_back({body.name, "", body.material});
+    for (const SceneRegion& r : body.regions) p->parts.push_back({body.name, r.name, r.material});
+  }
+  p->gravity = scene.gravity;
+  p->stepper = scene.names_steps ? word_of(scene.stepper) : std::string_view("live");
+  p->dt = scene.dt.value_or(0.0);
+  if (scene.ground) {
+    p->has_ground = true;
+    p->ground_point = scene.ground->point;
+    p->ground_normal = scene.ground->normal;
+  }
+  p->opened = opened_;
+  for (const Probe& probe : model().probes) p->probes.push_back(probe.name);
+  for (std::size_t o = 0; o < scene.obstacles.size(); ++o)
+    p->obstacles.push_back(rigid_of(model(), model().obstacles[o], scene.obstacles[o].shape));
+  p->compare = compare_;
+  p->cut = cut_;
+  p->springs_shown = springs_;
+  p->scene = scene.name;
+  p->title = scene.title;
+  p->look_for = scene.look_for;
+  p->nodes = model().body_node_count();
+  p->tets = model().tet_count();
+  p->springs = model().spring_count();
+  for (const double m : model().mass) p->mass += m;
+  p->document = document_with_base(scene);
+  parameters_ = std::move(p);
+  ++changes_;
+}
+
+void Session::take_step() {
+  steps(Clock::time_point::max(), nullptr, true);
+  catch_up(Clock::time_point::max(), nullptr);
+}
+
+bool Session::advance(Clock::time_point deadline, const std::atomic<bool>* hurry) {
+  if (!ahead_) ahead_ = steps(deadline, hurry, false);
+  if (!ahead_ || !catch_up(deadline, hurry)) return false;
+  ahead_ = false;
+  grabs_.follow(world(), size());
+  ball_.follow(world(), world().stepping().frame_interval(), size());
+  keep_pace();
+  return true;
+}
+
+// Explicit steps that were fast enough for the body at rest may not be for one that is stretched.
+void Session::keep_pace() {
+  if (fell_behind_ || leader_ != nullptr || world().run().stepper != StepperKind::verlet) return;
+  const Speed& v = last_speed_;
+  if (v.wall < speed_window || v.simulated > slow_pace * v.wall) return;
+  if (world().scene().names_steps || !suits_implicit(model())) return;
+  fell_behind_ = true;
+  for (Session* s : {this, other_.get()}) {
+    if (s == nullptr) continue;
+    s->world().choose_steps();
+    s->changed();
+  }
+}
+
+bool Session::steps(Clock::time_point deadline, const std::atomic<bool>* hurry, bool only_one) {
+  const Clock::time_point start = Clock::now();
+  const RunState& run = world().run();
+  const double time = run.state.time;
+  const std::int64_t step = run.state.step;
+  const std::int64_t newton = run.newton_steps;
+  const std::int64_t products = run.products;
+  bool finished = false;
+  try {
+    finished = only_one ? world().step() : world().advance_frame(hurry, deadline);
+  } catch (const Error& e) {  // the world is back where the last frame ended
+    running_ = false;
+    report(e);
+    let_go();
+    return true;
+  }
+  if (finished) world().keep();
+  speed_.wall += seconds_since(start);
+  speed_.simulated += run.state.time - time;
+  speed_.steps += run.state.step - step;
+  speed_.newton += run.newton_steps - newton;
+  speed_.products += run.products - products;
+  if (speed_.wall > speed_window || last_speed_.steps == 0) {
+    last_speed_ = speed_;
+    if (speed_.wall > speed_window) speed_ = {};
+  }
+  return finished;
+}
+
+// What keeps the simulation from the speed that is asked for.
+std::string Session::limiting() const {
+  const RunState& run = world().run();
+  if (last_speed_.wall == 0.0) return {};
+  if (capacity() >= time_scale_) return {};
+  if (other_ && capacity() < 0.7 * last_speed_.simulated / last_speed_.wall) {
+    return "two bodies are stepped, and the one with the other law takes most of the time";
+  }
+  if (run.stepper == StepperKind::implicit) {
+    return fmt::format("each implicit step takes {:.1f} Newton steps",
+                       static_cast<double>(last_speed_.newton) /
+                           static_cast<double>(std::max<std::int64_t>(1, last_speed_.steps)));
+  }
+  return fmt::format(
+      "stiffness: the stable step is {:.3g} ms, {:.0f} steps a frame; "
+      "a softer material, a coarser mesh or implicit steps are faster",
+      1e3 * run.memory.stable_step, 1.0 / (frames_per_second * run.step));
+}
+
+Status Session::status() {
+  const RunState& run = world().run();
+  Status s;
+  s.revision = revision_;
+  s.changes = changes_;
+  s.running = running_;
+  s.time = run.state.time;
+  s.step = run.state.step;
+  s.dt = last_speed_.steps > 0 ? run.step : run.target_step;
+  s.stable_step = run.memory.stable_step;
+  s.stepper = run.stepper;
+  s.reason = run.stepper_reason;
+  s.time_scale = time_scale_;
+  const Speed& v = last_speed_;
+  if (v.steps > 0) {
+    const auto count = static_cast<double>(v.steps);
+    s.capacity = capacity();
+    s.ms_per_step = 1e3 * v.wall / count;
+    s.steps_per_frame = count / (frames_per_second * v.simulated);
+    s.newton_per_step = static_cast<double>(v.newton) / count;
+    s.products_per_newton =
+        static_cast<double>(v.products) / static_cast<double>(std::max<std::int64_t>(1, v.newton));
+  }
+  s.limit = limiting();
+  s.energy = measure_energies(model(), world().controls(), run.state, force());
+  s.volume_ratio = volume_ratio(model(), run.state.position);
+  const StretchRange range = measure_stretch(model(), run.state.position);
+  s.max_stretch = range.stretch;
+  s.max_compress = range.compress;
+  s.counters = run;
+  s.inverted_tets = count_inverted(model(), run.state.position);
+  s.hands = grabs_.status(world());
+  for (const ProbeReading& p : read_probes(model(), run.state.position)) {
+    s.probes.push_back(p.displacement);
+  }
+  for (const ObstacleReading& o : read_obstacles(model(), run.state, world().finder())) {
+    if (s.obstacles.size() == world().scene().obstacles.size()) break;  // the ball comes last
+    const Obstacle& obstacle = model().obstacles[s.obstacles.size()];
+    const Mat3 turn = obstacle_pose(obstacle, run.state.time).turn;
+    s.obstacles.push_back({o.center, obstacle.radius, o.force, o.contacts, turn});
+  }
+  s.ball = ball_.status(world());
+  if (other_) s.distance = distance_between(pair_.mine, pair_.others, model().body_node_count());
+  s.error = error_;
+  s.errors = errors_;
+  return s;
+}
+
+Frame Session::frame() {
+  const State& state = world().state();
+  Frame f;
+  f.revision = revision_;
+  f.number = ++frames_;
+  f.time = state.time;
+  f.quantity = quantity_;
+  // Compared bodies are shown at the same time, where both have got to.
+  f.position = gather(other_ ? pair_.mine : state.position, topology_->node);
+  f.value = measure(quantity_, model(), state, *topology_);
+  f.contact = find_contacts(model(), state, *topology_, world().finder());
+  if (other_) {
+    f.compared = gather(pair_.others, topology_->node);
+    if (quantity_ == Quantity::distance) f.value = distances(f.position, f.compared);
+  }
+  return f;
+}
+
+}  // namespace sinew::live
