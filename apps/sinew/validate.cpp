@@ -93,8 +93,7 @@ void add_validate(CLI::App& app, int& status) {
   auto a = std::make_shared<ValidateArguments>();
   CLI::App* command =
       app.add_subcommand("validate", "Compare the laws with reference values, case by case");
-  std::vector<std::string> laws;
-  for (const LawChoice& law : law_choices()) laws.push_back(law.name);
+  const std::vector<std::string> laws = law_choice_names();
   command->add_option("CASE", a->cases, "Names of cases; default all");
   command->add_option("--dir", a->dir, "Folder of the cases")->capture_default_str();
   command->add_option("--law", a->laws, "Only this law; may be given more than once")

@@ -1,5 +1,5 @@
-// What frames hold beside a quantity: positions as floats, who touches what, how far bodies are
-// apart.
+// The parts of a frame beside its quantity: positions as floats, nodes that touch something,
+// distances of compared bodies.
 #pragma once
 
 #include <cstdint>

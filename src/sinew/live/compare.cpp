@@ -16,12 +16,6 @@ bool is_of_law(const SetMaterial& c) {
   return c.key == "law" || c.key == "volume" || c.key == "beta";
 }
 
-std::string names_of_laws() {
-  std::string names;
-  for (const LawChoice& law : law_choices()) names += (names.empty() ? "" : ", ") + law.name;
-  return names;
-}
-
 Scene with_law(const Scene& scene, const LawChoice& law) {
   std::vector<std::string> overrides;
   for (const SceneBody& body : scene.bodies) {
@@ -49,7 +43,7 @@ void Session::act(const SetCompare& c) {
   const LawChoice* law = find_law(c.law);
   if (law == nullptr) {
     throw Error(ErrorKind::usage, fmt::format("there is no law '{}' to compare with", c.law),
-                "one of " + names_of_laws());
+                fmt::format("one of {}", fmt::join(law_choice_names(), ", ")));
   }
   std::unique_ptr<Session> other(new Session(with_law(world().current_scene(), *law), this));
   other_.reset();

@@ -1,4 +1,4 @@
-// What a live simulation shows of itself: frames to draw, and a status in numbers.
+// The output of a session: frames to draw, a status in numbers, and the values that may change.
 #pragma once
 
 #include <cstdint>

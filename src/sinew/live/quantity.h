@@ -1,4 +1,4 @@
-// What the live view colours a surface by: one number per node of it.
+// The quantities that colour a surface in the live view: one number per node of it.
 #pragma once
 
 #include <array>

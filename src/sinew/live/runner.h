@@ -1,5 +1,5 @@
-// A live simulation on a thread of its own, at the pace of the clock: commands go in, the newest
-// frame and status can be had at any time.
+// A Session on a thread of its own, at the pace of the clock. It takes commands, and gives the
+// newest frame and status at any time.
 #pragma once
 
 #include <atomic>
@@ -24,15 +24,15 @@ struct Snapshot {
 
 class Runner {
  public:
-  // Builds the scene before it returns; throws what Session throws. `published` is called from
-  // the simulation's thread after every new frame or status, and has to be quick.
+  // Builds the scene before it returns; throws what Session throws. `published` is called on the
+  // session's thread after every new frame or status, and must be quick.
   explicit Runner(const Scene& scene, std::function<void()> published = {});
   ~Runner();  // ends the thread after the step under way
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
-  // Queues the command; of moves of one hand, or values of one key, that wait one after the other
-  // only the last is kept. False where too many wait: the command is dropped.
+  // Queues the command. Of successive moves of one hand, or values of one key, only the last is
+  // kept. False: too many commands wait, and this one is dropped.
   bool post(Command command);
 
   Snapshot snapshot() const;

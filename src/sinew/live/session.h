@@ -27,22 +27,21 @@ class Session {
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  // Does what is asked. Throws Error(input, usage) and changes nothing where a value cannot be used
-  // or a node or hand does not exist; Load throws what the constructor throws.
+  // Carries out the command. Throws Error(input, usage) and changes nothing if a value cannot be
+  // used or a node or hand does not exist; Load throws what the constructor throws.
   void apply(const Command& command);
 
   bool running() const { return running_; }
   double time() const { return state().time; }
   double time_scale() const { return time_scale_; }
 
-  // Takes steps to the end of the frame under way, but none after `deadline` or once `hurry` is
-  // set, and one at least. Returns whether the frame is finished, that of a compared body included.
-  // A body that diverges is put back to where the last frame ended, paused, and the status says
-  // why.
+  // Takes steps to the end of the frame under way, one at least; none after `deadline`, and none
+  // once `hurry` is set. True: the frame is finished, that of a compared body as well. A body that
+  // diverges returns to the end of the last frame and is paused; the status says why.
   bool advance(Clock::time_point deadline, const std::atomic<bool>* hurry = nullptr);
   void take_step();
 
-  // Costs about as much as a step in double precision: it measures energies.
+  // Measures energies, which costs about as much as a step in double precision.
   Status status();
   Frame frame();
   std::shared_ptr<const Topology> topology() const { return topology_; }
@@ -50,7 +49,7 @@ class Session {
   const Model& model() const { return world().model(); }
   const State& state() const { return world().state(); }
 
-  // Shown by status() until the next command that succeeds.
+  // Shows the error in status() until the next command that succeeds.
   void report(const Error& error);
 
  private:

@@ -1,5 +1,6 @@
-// What the live view draws of a model: the surface of its bodies, or of what a cut leaves of them,
-// and springs if asked for. The same until another scene is loaded or something else is to be seen.
+// The parts of a model that the live view draws: the surface of its bodies, or of what a cut leaves
+// of them, and springs if they are asked for. A topology holds until another scene is loaded or
+// another cut is asked for.
 #pragma once
 
 #include <cstdint>

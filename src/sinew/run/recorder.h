@@ -1,5 +1,5 @@
-// Writes what a run shows: a VTU file per frame with a .pvd over them, probes.csv, energy.csv,
-// frames.csv.
+// The files of a run that show its frames: a VTU file per frame and a .pvd that lists them,
+// probes.csv, energy.csv, frames.csv.
 #pragma once
 
 #include <filesystem>
@@ -16,13 +16,13 @@ namespace sinew {
 
 class Recorder {
  public:
-  // `folder` has to exist. A resumed run (run.frame_times not empty) keeps the rows of the frames
-  // that its checkpoint knows and drops what was written after it.
+  // `folder` must exist. A resumed run (run.frame_times not empty) keeps the rows of the frames in
+  // its checkpoint and drops later ones.
   Recorder(const Scene& scene, const Model& model, std::filesystem::path folder,
            const RunState& run);
 
-  // Writes the frame that the state now stands at, the last of run.frame_times. `force`: of all
-  // terms there [N] (nodes), as below. `finder`: null if nothing can touch.
+  // Writes the current state as the last frame of run.frame_times. `force`: of all terms there [N]
+  // (nodes), as below. `finder`: null if nothing can touch.
   void record(const Controls& controls, const RunState& run, const std::vector<Vec3>& force,
               ContactFinder* finder);
 

@@ -1,4 +1,4 @@
-// Runs a scene from its start, or on from a checkpoint, into a folder.
+// A run of a scene into a folder: from its start, or on from a checkpoint.
 #pragma once
 
 #include <atomic>
@@ -24,13 +24,13 @@ struct Progress {
 };
 
 struct RunOptions {
-  std::filesystem::path out;                         // folder to write; empty: write nothing
+  std::filesystem::path out;                         // folder to write; empty: nothing is written
   bool force = false;                                // an earlier run in `out` may be replaced
-  const std::atomic<bool>* stop = nullptr;           // set it to end after the step under way
+  const std::atomic<bool>* stop = nullptr;           // true ends the run after the step under way
   std::function<void(const Progress&)> on_progress;  // called after every frame
-  // stepper = "auto": called before the first step with RunState::stepper and its reason.
+  // Called before the first step of stepper = "auto" with RunState::stepper and its reason.
   std::function<void(StepperKind, const std::string&)> on_stepper;
-  // Called before the first step with what is wrong with the start; it is in the summary as well.
+  // Called before the first step with each fault of the start. The summary has them as well.
   std::function<void(const std::string&)> on_warning;
 };
 
@@ -40,15 +40,15 @@ struct RunResult {
   std::optional<Error> error;  // why a run diverged
 };
 
-// The folder gets scene.toml (the scene with its overrides, from which it can be resumed),
-// NAME.pvd and frames/*.vtu, probes.csv, energy.csv, frames.csv, checkpoint.bin, summary.json.
-// Throws Error(input) for a scene that cannot be built, Error(unstable) for a step above the
-// stable one, Error(usage) where `out` holds a run, Error(io). A run that diverges does not throw:
-// its last good frame, checkpoint and summary are kept.
+// Writes scene.toml (the scene with its overrides, from which the run can be resumed), NAME.pvd and
+// frames/*.vtu, probes.csv, energy.csv, frames.csv, checkpoint.bin, summary.json. Throws
+// Error(input) for a scene that cannot be built, Error(unstable) for a step above the stable one,
+// Error(usage) if `out` holds a run, Error(io). A run that diverges does not throw: its last good
+// frame, checkpoint and summary are kept.
 RunResult run_scene(const Scene& scene, const RunOptions& options);
 
-// Goes on with the run in `folder` from its checkpoint; ends with the same bits as an unbroken
-// run. options.out is ignored. Throws Error(input) where there is nothing to resume.
+// Continues the run in `folder` from its checkpoint and ends with the same bits as an unbroken run.
+// options.out is ignored. Throws Error(input) if there is nothing to resume.
 RunResult resume_run(const std::filesystem::path& folder, const RunOptions& options);
 
 // The exit code of the process for a result: 0, 130 (interrupted) or that of the error.

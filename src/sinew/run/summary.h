@@ -1,4 +1,4 @@
-// What a run comes to, as summary.json and the table of the command line say it.
+// The result of a run, as summary.json and the table of the command line show it.
 #pragma once
 
 #include <array>
@@ -34,7 +34,7 @@ struct BodySummary {
   double volume_ratio = 1.0;  // current over rest volume [-]
 };
 
-// What became of budget_ms.
+// How the frames kept to budget_ms.
 struct BudgetSummary {
   double ms = 0.0;                                  // of wall time that the steps of a frame had
   std::int64_t cut_short = 0;                       // frames with a step that ran out of time
@@ -78,13 +78,13 @@ struct Summary : RunCounters {
   double realtime_factor() const { return wall_seconds > 0.0 ? sim_seconds / wall_seconds : 0.0; }
 };
 
-// Measures the run as it stands. `meshes`: where each body's mesh came from; `finder`: null if
+// Measures the current state of the run. `meshes`: the source of each body's mesh; `finder`: null if
 // nothing can touch.
 Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
                   const std::vector<std::string>& meshes, RunState& run,
                   const std::vector<Vec3>& force, ContactFinder* finder);
 
-// The object of summary.json: docs/output.md names its keys.
+// The object of summary.json. docs/output.md lists its keys.
 nlohmann::ordered_json to_json(const Summary& summary);
 
 }  // namespace sinew

@@ -26,6 +26,12 @@ inline const std::vector<LawChoice>& law_choices() {
   return laws;
 }
 
+inline std::vector<std::string> law_choice_names() {
+  std::vector<std::string> names;
+  for (const LawChoice& law : law_choices()) names.push_back(law.name);
+  return names;
+}
+
 // Null if there is none of that name.
 inline const LawChoice* find_law(const std::string& name) {
   for (const LawChoice& law : law_choices())

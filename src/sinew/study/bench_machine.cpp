@@ -1,5 +1,6 @@
 #include "sinew/study/bench_machine.h"
 
+#include <fmt/format.h>
 #include <hwy/aligned_allocator.h>
 #include <unistd.h>
 
@@ -28,7 +29,7 @@ double read_size(const std::string& path) {
 
 double cache_size(int level) {
   for (int i = 0; i < 8; ++i) {
-    const std::string folder = "/sys/devices/system/cpu/cpu0/cache/index" + std::to_string(i) + "/";
+    const std::string folder = fmt::format("/sys/devices/system/cpu/cpu0/cache/index{}/", i);
     std::ifstream file(folder + "level");
     int found = 0;
     if (file >> found && found == level) return read_size(folder + "size");

@@ -257,12 +257,11 @@ Case load_case(const fs::path& folder, const std::string& name) {
   c.title = root.text("title", true);
   c.laws = root.texts("laws");
   for (const std::string& law : c.laws) {
-    std::vector<std::string> laws = names_of(law_choices());
     if (find_law(law) == nullptr)
       root.fail(*document.find("laws"),
-                fmt::format("unknown law '{}'{}", law, did_you_mean(law, laws)));
+                fmt::format("unknown law '{}'{}", law, did_you_mean(law, law_choice_names())));
   }
-  if (c.laws.empty()) c.laws = names_of(law_choices());
+  if (c.laws.empty()) c.laws = law_choice_names();
   c.variants = read_choices(root, "variant");
   c.meshes = read_choices(root, "mesh");
   for (const DocValue& item : root.items("quantity")) c.quantities.push_back(read_quantity(item));
