@@ -38,7 +38,7 @@ struct Damped {
 };
 
 template <class T>
-Matrix blocks_of(T, const Configuration& at) {
+Matrix damping_blocks_of(T, const Configuration& at) {
   const auto n = static_cast<Eigen::Index>(3 * at.x.size());
   Matrix C = Matrix::Zero(n, n);
   T::for_each_block(at, [&](Index i, Index j, const Mat3& c) { C.block<3, 3>(3 * i, 3 * j) += c; });
@@ -57,7 +57,7 @@ TEST(DampingTerms, ForcesAndPowerAreThoseOfTheBlocks) {
   for_each_type(DampingTerms{}, [&](auto term) {
     static_assert(DampingTerm<decltype(term)>);
     SCOPED_TRACE(typeid(term).name());
-    const Matrix C = blocks_of(term, d.at());
+    const Matrix C = damping_blocks_of(term, d.at());
     const Eigen::VectorXd v = test::flat(d.v);
     EXPECT_GT(C.norm(), 1e-3);
     EXPECT_LT((C - C.transpose()).norm(), 1e-12 * C.norm());
