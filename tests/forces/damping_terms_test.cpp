@@ -1,4 +1,4 @@
-#include "sinew/forces/damping_terms.h"
+#include "tests/support/damping_terms.h"
 
 #include <gtest/gtest.h>
 
@@ -54,8 +54,8 @@ std::vector<Vec3> forces_of(T, const Damped& d) {
 
 TEST(DampingTerms, ForcesAndPowerAreThoseOfTheBlocks) {
   const Damped d;
-  for_each_type(DampingTerms{}, [&](auto term) {
-    static_assert(DampingTerm<decltype(term)>);
+  for_each_type(test::DampingTerms{}, [&](auto term) {
+    static_assert(test::DampingTerm<decltype(term)>);
     SCOPED_TRACE(typeid(term).name());
     const Matrix C = damping_blocks_of(term, d.at());
     const Eigen::VectorXd v = test::flat(d.v);
@@ -71,7 +71,7 @@ TEST(DampingTerms, TheFusedLoopsAreTheirSum) {
   const Damped d;
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(3 * d.model.node_count());
   double power = 0.0;
-  for_each_type(DampingTerms{}, [&](auto term) {
+  for_each_type(test::DampingTerms{}, [&](auto term) {
     sum += test::flat(forces_of(term, d));
     power += term.power(d.at(), d.v);
   });

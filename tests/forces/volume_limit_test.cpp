@@ -28,7 +28,7 @@ TEST(VolumeLimit, BringsEveryCellWithinItsLimitAndKeepsMomentum) {
     EXPECT_GT(largest_cell_change(m, x), 0.1);
     Vec3 before = Vec3::Zero(), after = Vec3::Zero();
     for (std::size_t i = 0; i < x.size(); ++i) before += m.mass[i] * x[i];
-    const VolumeLimitReport report = enforce_volume_limit(m, x);
+    const VolumeLimitReport report = VolumeLimit().enforce(m, x);
     for (std::size_t i = 0; i < x.size(); ++i) after += m.mass[i] * x[i];
     EXPECT_TRUE(report.met);
     EXPECT_LE(report.change, 5e-4);
@@ -45,7 +45,7 @@ TEST(VolumeLimit, LeavesWhatHoldsAlone) {
   std::vector<Vec3> x(m.rest_position);
   x[0] += Vec3::Constant(1e-7);
   const std::vector<Vec3> start(x);
-  const VolumeLimitReport report = enforce_volume_limit(m, x);
+  const VolumeLimitReport report = VolumeLimit().enforce(m, x);
   EXPECT_TRUE(report.met);
   EXPECT_EQ(report.projections, 0);
   EXPECT_EQ(x, start);
@@ -61,7 +61,7 @@ TEST(VolumeLimit, SaysSoWhenPinsLeaveNoRoom) {
   finish(m);
   std::vector<Vec3> x(m.rest_position);
   for (Vec3& p : x) p *= 1.1;
-  EXPECT_FALSE(enforce_volume_limit(m, x).met);
+  EXPECT_FALSE(VolumeLimit().enforce(m, x).met);
 }
 
 }  // namespace

@@ -6,10 +6,8 @@
 #include <random>
 
 #include "sinew/forces/assemble.h"
-#include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/mesh/shapes.h"
-#include "sinew/solver/block_cholesky.h"
 #include "tests/support/forces.h"
 #include "tests/support/models.h"
 
@@ -165,37 +163,6 @@ TEST(LinearSolver, ABodyThatNothingHoldsIsSolvedUpToItsMotion) {
   test::tangent_times({m, initial_controls(m), s.position}, 1.0, 0.0, p, Tangent::full, back);
   add(back, -1.0, f);
   EXPECT_LT(std::sqrt(dot(back, back)), 2e-3 * std::sqrt(dot(f, f)));
-}
-
-TEST(BlockCholesky, SolvesASparseSystemWithFillIn) {
-  const int blocks = 5;
-  std::mt19937 random(4);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(blocks * coarse_size, blocks * coarse_size);
-  std::vector<std::map<Index, CoarseBlock>> column(blocks);
-  for (int j = 0; j < blocks; ++j) {
-    for (const int i : {j, j + 1, j + 3}) {
-      if (i >= blocks) continue;
-      CoarseBlock b = CoarseBlock::NullaryExpr([&] { return uniform(random); });
-      if (i == j) b = CoarseBlock(0.5 * (b + b.transpose())) + 60.0 * CoarseBlock::Identity();
-      column[static_cast<std::size_t>(j)][i] = b;
-      a.block<coarse_size, coarse_size>(i * coarse_size, j * coarse_size) = b;
-      a.block<coarse_size, coarse_size>(j * coarse_size, i * coarse_size) = b.transpose();
-    }
-  }
-  std::vector<CoarseVector> x(blocks);
-  Eigen::VectorXd b(blocks * coarse_size);
-  for (int i = 0; i < blocks; ++i) {
-    x[static_cast<std::size_t>(i)] =
-        CoarseVector::NullaryExpr([&] { return static_cast<float>(uniform(random)); });
-    b.segment<coarse_size>(i * coarse_size) = x[static_cast<std::size_t>(i)].cast<double>();
-  }
-  BlockCholesky(column).solve(x);
-  Eigen::VectorXd solution(blocks * coarse_size);
-  for (int i = 0; i < blocks; ++i) {
-    solution.segment<coarse_size>(i * coarse_size) = x[static_cast<std::size_t>(i)].cast<double>();
-  }
-  EXPECT_LT((a * solution - b).norm(), 1e-5 * b.norm());
 }
 
 }  // namespace

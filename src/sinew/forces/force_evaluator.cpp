@@ -64,7 +64,7 @@ namespace {
 
 std::variant<PlainMaterial, PackedMaterial> material_of(const Model& model, Precision precision) {
   if (precision == Precision::single) return PackedMaterial(model);
-  return PlainMaterial(model);
+  return PlainMaterial();
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ struct NodalForces {
 // Springs, dashpots, network, volume, gravity and drag in double precision.
 class PlainMaterial {
  public:
-  explicit PlainMaterial(const Model&) {}
+  PlainMaterial() = default;
 
   // Sets force and low_tets of `found`, and adds the power of dashpots and drag to its heat.
   void evaluate(const Model& model, const Vec3& gravity, const State& state, NodalForces& found);
@@ -58,7 +58,7 @@ class PackedMaterial {
 };
 
 // Owns the arrays of all results, so that an evaluation allocates nothing. A reference that it
-// returns is good until the next call of the same function. What a function returns depends on its
+// returns is valid until the next call of the same function. What a function returns depends on its
 // arguments alone, never on earlier calls.
 class ForceEvaluator {
  public:
@@ -69,7 +69,7 @@ class ForceEvaluator {
   // Pinned nodes and anchors get only what the material pulls.
   const NodalForces& evaluate(const Controls& controls, const State& state);
 
-  // The tets at positions x, in double precision. It costs nothing in double precision if the last
+  // The tets at positions x, in double precision. Free of cost in double precision if the last
   // evaluate() was there.
   const TetState& tets(std::span<const Vec3> x);
   // Their volumes alone [m3] (tets).

@@ -1,12 +1,12 @@
-// Inversion recovery: what takes the place of the material while a body is tangled.
+// Inversion recovery: the forces that replace those of the material while a body is tangled.
 // docs/methods/inversion-recovery.md.
 //
 // No energy of a material leads back to the rest shape from everywhere: a fold in which every tet
-// has its right side out is a rest state too. A body much of which is inside out (started so, or
-// torn through an obstacle) has left what the material describes, and is led back to where it
-// describes something again: every node is pulled to its place in the body's rest shape, moved
-// rigidly to fit the nodes best (shape matching, Mueller et al. 2005). That is a straight way from
-// any state to one without inverted tets.
+// has its right side out is a rest state too. A body with many inverted tets (at the start, or
+// after an obstacle has torn through it) is outside the range of the material law. It is led back
+// into that range: every node is pulled to its place in the body's rest shape, moved rigidly to fit
+// the nodes best (shape matching, Mueller et al. 2005). This leads straight from any state to one
+// without inverted tets.
 #pragma once
 
 #include <span>

@@ -1,6 +1,6 @@
-// The terms of the material and gravity, each alone and in plain words: what tests hold the fused
-// loops of a step against (forces/terms.cpp, forces/stiffness.cpp, forces/packed.h,
-// solver/tangent_matrix.h), which compute all of them at once.
+// The terms of the material and gravity, each by itself in plain loops: the reference that the
+// tests compare the fused loops with (forces/force_evaluator.h, forces/stiffness.h,
+// forces/packed.h, solver/tangent_matrix.h), which compute all terms at once.
 #pragma once
 
 #include <algorithm>

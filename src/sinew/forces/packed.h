@@ -1,9 +1,9 @@
 // The material's forces in single precision, laid out for SIMD: network, volume terms and springs
 // of a model. docs/methods/single-precision.md.
 //
-// Every term is written in displacements u that leave out how the body has moved as a whole, so
-// that nothing that cancels at rest is ever summed: what is left of digits depends neither on how
-// stiff the material is nor on how far the body has gone.
+// Every term is written in displacements u without the rigid motion of the body. Numbers that
+// cancel at rest are never summed, so the digits that remain depend neither on the stiffness of the
+// material nor on how far the body has moved.
 //
 // Nodes, tets and springs are cut into patches of neighbouring nodes, in whose order they are kept.
 // A patch adds up what its tets and springs do to its own copies of their nodes (its slots), which

@@ -1,4 +1,4 @@
-// The tangent of all terms, as matrix-free products: what the stable step and the rest state need.
+// Matrix-free products with the tangent of all terms, for the stable step and rest states.
 #pragma once
 
 #include <span>

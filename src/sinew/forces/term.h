@@ -1,5 +1,5 @@
-// What a term is: something with an energy whose gradient pulls on nodes. The list of them all is
-// in forces/terms.h; docs/adding-a-force.md tells how another one is added.
+// The concept of a term: an energy whose negative gradient is a force on nodes. The list of all
+// terms is in forces/terms.h; docs/adding-a-force.md tells how to add one.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace sinew {
 
-// Where everything is, but for the velocities: what energies, and forces that have one, depend on.
+// The positions, the controls and the time: all that energies and their forces depend on.
 struct Configuration {
   const Model& model;
   const Controls& controls;

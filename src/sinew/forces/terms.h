@@ -1,4 +1,4 @@
-// The list of terms, and what all of them do together: forces, energies, tangent. A new force is
+// The list of terms, with their energies and outer forces in sum. A new force is
 // one word in this list (docs/adding-a-force.md).
 #pragma once
 
@@ -16,8 +16,8 @@
 
 namespace sinew {
 
-// Everything with a potential that is not the material's own or gravity. All else follows: forces,
-// energies, products, the tangent matrix, the stable step, which bodies are joined, and the tests.
+// All terms but those of the material and gravity. Forces, energies, products, the tangent matrix,
+// the stable step, which bodies are joined, and the tests follow from this list.
 using Terms = TypeList<TieTerm, LoadTerm, ObstacleTerm, GrabTerm>;
 
 // What the loops of a step compute at once: these, with dashpots, viscosity and drag

@@ -20,17 +20,9 @@ double corner_volume(std::span<const Vec3> x, const Tet& t) {
   return signed_volume(x[uz(t[0])], x[uz(t[1])], x[uz(t[2])], x[uz(t[3])]);
 }
 
-inline double sum_over_cell(const Model& model, std::size_t c, std::span<const double> of_tet) {
-  double sum = 0.0;
-  for (Index k = model.cell_start[c]; k < model.cell_start[c + 1]; ++k) {
-    sum += model.cell_weight[uz(k)] * of_tet[uz(model.cell_tet[uz(k)])];
-  }
-  return sum;
-}
-
 // kappa_c (J_c - 1) for these volumes of the tets.
 inline double pressure_of_cell(const Model& model, std::size_t c, std::span<const double> volume) {
-  return model.cell_bulk[c] * (sum_over_cell(model, c, volume) / model.cell_volume[c] - 1.0);
+  return model.cell_bulk[c] * (sum_of_cell(model, c, volume) / model.cell_volume[c] - 1.0);
 }
 
 double mean_of_cells(const Model& model, std::size_t t, std::span<const double> of_cell) {
@@ -42,17 +34,15 @@ double mean_of_cells(const Model& model, std::size_t t, std::span<const double> 
   return sum;
 }
 
-// A tet at x: v = e3 . (e1 x e2) / 6 is e3 . dv/dx_3.
-struct TetGeometry {
-  double volume = 0.0;
-  Corners gradient;
-};
-TetGeometry geometry_of(const Model& model, std::span<const Vec3> x, std::size_t t) {
+// v and dv/dx of a tet at x: v = e3 . (e1 x e2) / 6 is e3 . dv/dx_3.
+inline void set_geometry(const Model& model, std::span<const Vec3> x, std::size_t t, double& volume,
+                         Corners& gradient) {
   const Tet& tet = model.tets[t];
   const Vec3& x0 = x[uz(tet[0])];
   const Vec3 e3 = x[uz(tet[3])] - x0;
   const Corners g = volume_gradient(x[uz(tet[1])] - x0, x[uz(tet[2])] - x0, e3);
-  return {e3.dot(g[3]), g};
+  volume = e3.dot(g[3]);
+  gradient = g;
 }
 
 // Leaves the arrays empty where the model has no volume terms.
@@ -61,9 +51,7 @@ void fill_tet_volumes(const Model& model, std::span<const Vec3> x, TetVolumes& t
   tets.volume.resize(model.tets.size());
   tets.gradient.resize(model.tets.size());
   parallel_for(model.tet_count(), [&](Index t) {
-    const TetGeometry tet = geometry_of(model, x, uz(t));
-    tets.volume[uz(t)] = tet.volume;
-    tets.gradient[uz(t)] = tet.gradient;
+    set_geometry(model, x, uz(t), tets.volume[uz(t)], tets.gradient[uz(t)]);
   });
 }
 
@@ -244,8 +232,10 @@ std::vector<double> pressures_of_tets(const Model& model, std::span<const Vec3> 
 }
 
 LowTet low_tet_at(const Model& model, std::span<const Vec3> x, Index tet) {
-  const TetGeometry at = geometry_of(model, x, uz(tet));
-  return {tet, at.volume, at.gradient};
+  LowTet low;
+  low.tet = tet;
+  set_geometry(model, x, uz(tet), low.volume, low.gradient);
+  return low;
 }
 
 void find_low_tets(const Model& model, const TetVolumes& tets, std::vector<LowTet>& low) {
@@ -322,7 +312,7 @@ std::span<const Vec3> VolumeForceChange::compute(const Model& model, std::span<c
   cell_rate_.resize(model.cell_volume.size());
   parallel_for(model.cell_count(), [&](Index i) {
     const auto c = uz(i);
-    cell_rate_[c] = model.cell_bulk[c] * sum_over_cell(model, c, tet_rate_) / model.cell_volume[c];
+    cell_rate_[c] = model.cell_bulk[c] * sum_of_cell(model, c, tet_rate_) / model.cell_volume[c];
   });
   force_.resize(4 * model.tets.size());
   parallel_for(model.tet_count(), [&](Index i) {
@@ -345,15 +335,11 @@ std::span<const Vec3> VolumeForceChange::compute(const Model& model, std::span<c
   return force_;
 }
 
-double sum_of_cell(const Model& model, std::size_t cell, std::span<const double> of_tet) {
-  return sum_over_cell(model, cell, of_tet);
-}
-
 void rate_cells(const Model& model, const TetVolumes& tets, std::span<const Vec3> u,
                 std::vector<double>& tet_rate, std::span<double> rate) {
   fill_tet_rates(model, tets, u, tet_rate);
   parallel_for(model.cell_count(),
-               [&](Index c) { rate[uz(c)] = sum_over_cell(model, uz(c), tet_rate); });
+               [&](Index c) { rate[uz(c)] = sum_of_cell(model, uz(c), tet_rate); });
 }
 
 void press_cells(const Model& model, std::span<const double> weight,

@@ -115,12 +115,18 @@ inline Vec3 gather_tets(const Model& model, std::span<const Vec3> corner_force, 
 // --- the pieces of a projection on the cells' volumes (volume_limit.h) ---
 
 // Sum over the cell's tets of its share of a value of each (tets): its volume, for theirs.
-double sum_of_cell(const Model& model, std::size_t cell, std::span<const double> of_tet);
+inline double sum_of_cell(const Model& model, std::size_t cell, std::span<const double> of_tet) {
+  double sum = 0.0;
+  for (Index k = model.cell_start[cell]; k < model.cell_start[cell + 1]; ++k) {
+    sum += model.cell_weight[uz(k)] * of_tet[uz(model.cell_tet[uz(k)])];
+  }
+  return sum;
+}
 // What u changes the cells' volumes by, to first order [m3] (cells). tet_rate: the same of the
 // tets.
 void rate_cells(const Model& model, const TetVolumes& tets, std::span<const Vec3> u,
                 std::vector<double>& tet_rate, std::span<double> rate);
-// The pressures [tets] with which press_tets() gives the gradient of sum_c weight_c V_c(x).
+// Sets the `pressure` (tets) with which press_tets() gives the gradient of sum_c weight_c V_c(x).
 void press_cells(const Model& model, std::span<const double> weight, std::vector<double>& pressure);
 
 // V d2W/dv2 of a tet's own energies, its volume's and the guard's [Pa], at this volume [m3].

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "sinew/base/parallel.h"
-#include "sinew/forces/volume.h"
 
 namespace sinew {
 namespace {
@@ -85,17 +84,16 @@ bool is_small(const Model& model, const CellField& r) {
 
 }  // namespace
 
-VolumeLimitReport enforce_volume_limit(const Model& model, std::vector<Vec3>& x, int most) {
+VolumeLimitReport VolumeLimit::enforce(const Model& model, std::vector<Vec3>& x, int most) {
   VolumeLimitReport report;
   const std::size_t cells = model.cell_volume.size();
   CellField c(cells), lambda(cells), r(cells), z(cells), p(cells), q(cells);
   std::vector<Vec3> u(x.size());
-  std::vector<double> of_tets;
-  TetVolumes tets = compute_tet_volumes(model, x);
-  Violation v = measure(model, tets, c);
+  tets_ = compute_tet_volumes(model, x, std::move(tets_));
+  Violation v = measure(model, tets_, c);
   while (!v.met && report.projections < most) {
     ++report.projections;
-    const CellField diagonal = measure_diagonal(model, tets);
+    const CellField diagonal = measure_diagonal(model, tets_);
     const auto scale = [&] {
       for (std::size_t i = 0; i < cells; ++i) z[i] = r[i] / diagonal[i];
     };
@@ -105,8 +103,8 @@ VolumeLimitReport enforce_volume_limit(const Model& model, std::vector<Vec3>& x,
     p = z;
     double rz = dot(r, z);
     for (int k = 0; k < 400 && !is_small(model, r); ++k) {
-      spread(model, tets, p, of_tets, u);
-      rates(model, tets, u, of_tets, q);
+      spread(model, tets_, p, of_tets_, u);
+      rates(model, tets_, u, of_tets_, q);
       ++report.products;
       const double curvature = dot(p, q);
       if (!(curvature > 0.0)) break;
@@ -120,10 +118,10 @@ VolumeLimitReport enforce_volume_limit(const Model& model, std::vector<Vec3>& x,
       for (std::size_t i = 0; i < cells; ++i) p[i] = z[i] + next / rz * p[i];
       rz = next;
     }
-    spread(model, tets, lambda, of_tets, u);
+    spread(model, tets_, lambda, of_tets_, u);
     parallel_for(model.node_count(), [&](Index i) { x[uz(i)] += u[uz(i)]; });
-    tets = compute_tet_volumes(model, x, std::move(tets));
-    v = measure(model, tets, c);
+    tets_ = compute_tet_volumes(model, x, std::move(tets_));
+    v = measure(model, tets_, c);
   }
   report.met = v.met;
   report.change = v.change;

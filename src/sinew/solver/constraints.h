@@ -11,8 +11,8 @@
 
 namespace sinew {
 
-// How far conditions and friction are from where they have to be, over what is good enough: at most
-// 1 when they hold.
+// The errors of conditions and friction, as multiples of their tolerances: at most 1 where they
+// hold.
 struct ConstraintError {
   double distance = 0.0;  // largest change of a push over k, a way past the bound
   double grip = 0.0;      // change of the normal forces that friction goes by, of their sum
@@ -75,7 +75,7 @@ class Constraints {
 
   // --- the multipliers ---
 
-  // Makes the pushes at x the multipliers; returns how far they were off.
+  // Takes the pushes at x as the new multipliers; returns how far the old ones were off.
   ConstraintError update(const std::vector<Vec3>& x, std::span<const double> tet_volume);
   // Multiplies every k; start() takes that back.
   void harden(double factor) {

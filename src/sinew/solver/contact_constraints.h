@@ -42,8 +42,9 @@ class ContactConstraints {
   };
   const std::vector<Tangent>& tangents() const { return tangents_; }
 
-  // Makes the pushes at x the multipliers and finds the contacts at x. Returns how far pushes were
-  // off, over what is good enough; `grip`: the same for the normal forces that friction goes by.
+  // Makes the pushes at x the multipliers and finds the contacts at x. Returns the change of the
+  // pushes as a multiple of the tolerance; `grip`: the same for the normal forces that friction
+  // goes by.
   struct Change {
     double distance = 0.0;
     double grip = 0.0;

@@ -1,4 +1,4 @@
-// When work that costs wall time has to stop: of budget mode,
+// The wall-clock time at which a step has to end, in budget mode:
 // docs/methods/budget.md.
 #pragma once
 

@@ -47,12 +47,12 @@ class ImplicitStepper {
   //
   // A tangled body (forces/inversion_recovery.h) is led back towards its rest shape instead.
   //
-  // Where Newton's method does not arrive, the step is taken in two halves, and so on. Throws
-  // Error(diverged) where ten halvings are not enough. With a deadline the step is what Newton's
-  // method has by then, and no step is cut: its potential is below that of standing still.
+  // Where Newton's method does not converge, the step is cut in half, up to ten times. Throws
+  // Error(diverged) where that is not enough. With a deadline the step is the iterate of Newton's
+  // method at that time, and no step is cut; its potential is below that of standing still.
   StepReport step(double h, const Controls& controls, const ImplicitOptions& options, State& state);
 
-  // Makes what steps of length h need and a deadline should not pay for.
+  // Factors the preconditioner of steps of length h, before a deadline counts.
   void prepare(double h, const Controls& controls, const ImplicitOptions& options);
 
   // In double precision.

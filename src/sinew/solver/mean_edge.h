@@ -1,4 +1,4 @@
-// The length by which tolerances of places are measured.
+// The length that tolerances of positions are shares of.
 #pragma once
 
 #include "sinew/model/model.h"

@@ -1,5 +1,5 @@
-// Newton's method with conjugate gradients and a line search: what rest states and implicit steps
-// have in common. docs/methods/static.md, docs/methods/implicit.md.
+// Newton's method with conjugate gradients and a line search, for rest states and implicit
+// steps. docs/methods/static.md, docs/methods/implicit.md.
 #pragma once
 
 #include <atomic>
@@ -17,8 +17,8 @@ namespace sinew {
 
 class LinearSolver;
 
-// What is minimised over the positions x of the free nodes: the potential energy of the model at
-// state.time, plus
+// The function of the positions x of the free nodes that is minimised: the potential energy of the
+// model at state.time, plus
 //   share sum_i f_i . (x_i - X_i)            a dead force that is taken away in load steps
 //   inertia/2 sum_i m_i |x_i - y_i|^2        of an implicit step, inertia = 1/h^2
 //   rate/2 (x - from) . C (x - from)         dashpots, viscosity and drag over that step,
@@ -60,7 +60,7 @@ struct NewtonOptions {
   int most = 100;           // Newton steps
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const NewtonProgress&)> on_progress;
-  // What is there then is kept. One product is always taken, and the search along its direction.
+  // The current iterate is returned. One product and the search along its direction always run.
   Deadline deadline = {};
 };
 
@@ -84,8 +84,8 @@ struct NewtonReport {
 NewtonReport minimise(const Objective& objective, LinearSolver& linear,
                       const NewtonOptions& options, ForceEvaluator& forces, State& state);
 
-// The same with the multipliers of objective.constraints found too: minimises for given
-// multipliers, makes the pushes found the new ones, and again until the conditions hold and the
+// Finds the multipliers of objective.constraints as well: minimises for given multipliers, takes
+// the pushes found as the new multipliers, and repeats this until the conditions hold and the
 // forces rest.
 NewtonReport minimise_augmented_lagrangian(const Objective& objective, LinearSolver& linear,
                                            const NewtonOptions& options, ForceEvaluator& forces,

@@ -30,7 +30,7 @@ StableStep find_stable_step(const Model& model, const Controls& controls,
 // The same during a run, at the price of two steps in double precision or five in single: three
 // products of Lanczos that start from `mode`, the mode found before, with the step `h` now taken;
 // `mode` becomes the better one. Returns a stable step, which with damping may be shorter than the
-// largest. What three products cannot see is not in it: leave a margin.
+// largest. It misses what three products do not resolve: leave a margin.
 double watch_stable_step(const Model& model, const Controls& controls, const std::vector<Vec3>& x,
                          double h, std::vector<Vec3>& mode, ForceEvaluator& forces);
 

@@ -39,15 +39,15 @@ class StaticSolver {
   // is: Newton's method with conjugate gradients and a line search on the energy. Velocities become
   // zero, state.time = time. Dashpots and drag play no part.
   //
-  // A start that is tangled (forces/inversion_recovery.h) is no guess worth keeping: the body
-  // starts from its rest shape, moved rigidly to where it is.
+  // A body that is tangled at the start (forces/inversion_recovery.h) starts from its rest shape
+  // instead, moved rigidly to where it is.
   //
   // The ground, without friction, and the limits hold in it (solver/constraints.h). A body that
   // only the ground holds is put down on it first, straight along its normal, and then keeps its
   // place along the ground as nearly as it can.
   //
-  // Where Newton's method does not get through, pins and loads are brought on in smaller steps, and
-  // after two cuts the body is followed, once, as it falls to rest.
+  // Where Newton's method does not converge, pins and loads are applied in smaller steps, and after
+  // two cuts dynamic relaxation is tried once.
   // Throws Error(input) where a body has nothing to hold it against the forces on it, and
   // Error(diverged) where no rest state is found.
   // Where options.stop ends it, the state is the best so far.

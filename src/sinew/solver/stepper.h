@@ -1,4 +1,4 @@
-// A method that takes steps, behind one interface: one virtual call a step.
+// The interface of all time steppers: one virtual call a step.
 //
 // A new stepper is a class of its own (a .h and a .cpp), its word in solver/stepper_kind.h and a
 // line in make_stepper().
@@ -19,7 +19,7 @@
 
 namespace sinew {
 
-// What may end a step before it is done.
+// Conditions that end a step early.
 struct Interrupt {
   Deadline deadline = {};                   // implicit steps: the iterate of that time is the step
   const std::atomic<bool>* stop = nullptr;  // rest states: ends after the Newton step under way
@@ -37,7 +37,7 @@ struct StepMemory {
 struct FirstStep {
   double stable = no_limit;   // the longest stable step [s]
   double longest = no_limit;  // the longest step that it takes by itself [s]
-  std::string limited_by;     // what makes the stable step as short as it is
+  std::string limited_by;     // what limits the stable step
 };
 
 struct StepperOptions {
@@ -70,7 +70,7 @@ class Stepper {
   // any.
   virtual double stable_step(const StepMemory& memory) const { return memory.stable_step; }
 
-  // Does now what steps of length h [s] need and a deadline should not pay for.
+  // Prepares steps of length h [s], before a deadline counts.
   virtual void prepare(double h, const Controls& controls);
 
   // Whether steps lead to rest states: as long as the frame, whatever dt says.

@@ -1,5 +1,5 @@
-// The second derivative of what is minimised, put together once per Newton step so that the many
-// products of conjugate gradients are cheap. docs/methods/linear-solver.md.
+// The second derivative of the objective, assembled once per Newton step so that the many products
+// of conjugate gradients are cheap. docs/methods/linear-solver.md.
 #pragma once
 
 #include <span>

@@ -1,4 +1,4 @@
-// The inner loops of TangentMatrix on plain arrays, compiled for what processors can do.
+// The inner loops of TangentMatrix on plain arrays, compiled for several instruction sets.
 #pragma once
 
 #include <vector>

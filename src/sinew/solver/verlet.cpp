@@ -15,7 +15,6 @@
 #include "sinew/forces/springs.h"
 #include "sinew/forces/strain_limits.h"
 #include "sinew/forces/terms.h"
-#include "sinew/forces/volume_limit.h"
 
 namespace sinew {
 namespace {
@@ -116,10 +115,10 @@ void enforce_limits(const Model& model, const std::vector<Vec3>& force, double h
 }
 
 // Projects the limited cells back to their volume; velocities follow.
-void enforce_volume(const Model& model, const std::vector<Vec3>& force, double h, State& state,
-                    StepReport& report) {
+void enforce_volume(const Model& model, const std::vector<Vec3>& force, double h,
+                    VolumeLimit& limit, State& state, StepReport& report) {
   const std::vector<Vec3> predicted = state.position;
-  const VolumeLimitReport volume = enforce_volume_limit(model, state.position);
+  const VolumeLimitReport volume = limit.enforce(model, state.position);
   report.limits_met = report.limits_met && volume.met;
   if (volume.projections > 0) follow_positions(model, force, predicted, h, state);
 }
@@ -191,7 +190,7 @@ StepReport VerletStepper::step(double h, const Controls& controls, State& state)
       report.friction = contact.friction;
     }
     if (!model_.limited.empty()) enforce_limits(model_, force, h, state, report);
-    if (model_.has_volume_limit) enforce_volume(model_, force, h, state, report);
+    if (model_.has_volume_limit) enforce_volume(model_, force, h, volume_limit_, state, report);
   }
   state.last_step = h;
   state.time += h;
@@ -200,7 +199,7 @@ StepReport VerletStepper::step(double h, const Controls& controls, State& state)
     const NodalForces& after = forces_.evaluate(controls, state);
     state.energy.work_in += measure_energies(model_, controls, state, after.force).total() - energy;
   }
-  guard_frequency2_ = sinew::guard_frequency2(model_, found.low_tets);
+  guard_frequency2_ = sinew::guard_frequency2(model_, found.low_tets);  // of the last forces
   if (broken != none) report_divergence(model_, state, broken);
   return report;
 }

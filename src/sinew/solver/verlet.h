@@ -6,6 +6,7 @@
 
 #include "sinew/contact/explicit_contacts.h"
 #include "sinew/forces/force_evaluator.h"
+#include "sinew/forces/volume_limit.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/step_report.h"
@@ -21,12 +22,13 @@ class VerletStepper {
   //
   //   x(t+h) = 2 x(t) - x(t-h) + a(t) h^2,   v(t) = (x(t+h) - x(t-h)) / 2h
   //
-  // kept as positions and half-step velocities w = (x(t) - x(t-h)) / h, which is the same to the
-  // letter and loses fewer digits:  w += a (h_last + h)/2,  x += h w.  The first step, with
+  // kept as positions and half-step velocities w = (x(t) - x(t-h)) / h, which is equivalent
+  // and loses fewer digits:  w += a (h_last + h)/2,  x += h w.  The first step, with
   // h_last = 0 and w = v0, is the start x(-h) = x0 - h v0 + a0 h^2/2. Dashpots and drag see w, the
-  // half-step velocity. Tangled bodies are righted (forces/inversion_recovery.h); what that changes
-  // the energy by counts as work put in. After the move come the ground, then the limits;
-  // velocities follow the corrected positions. A step may differ in length from the last one.
+  // half-step velocity. Tangled bodies are led back to their rest shape
+  // (forces/inversion_recovery.h); the change of energy counts as work put in. After the move come
+  // the ground, then the limits; velocities follow the corrected positions. A step may differ in
+  // length from the last one.
   //
   // Throws Error(diverged) when a position is not finite any more or beyond 1e9 m, and names body,
   // node, spring and time; the state is then the broken one.
@@ -46,6 +48,7 @@ class VerletStepper {
   ForceEvaluator forces_;
   std::optional<ExplicitContacts> contacts_;  // of a model in which things can touch
   std::vector<Vec3> before_;                  // positions before the move [m] (nodes)
+  VolumeLimit volume_limit_;
   double guard_frequency2_ = 0.0;
 };
 

@@ -1,6 +1,6 @@
-// What turns motion into heat, each alone and in plain words: f = -C(x) v with C symmetric and
-// positive semidefinite. What tests hold the fused loops of a step against, as those of
-// forces/material_terms.h.
+// The terms that turn motion into heat, each by itself in plain loops: f = -C(x) v with C symmetric
+// and positive semidefinite. The reference for the fused loops of a step, as the terms of
+// forces/material_terms.h are.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 #include "sinew/forces/term.h"
 #include "sinew/forces/viscosity.h"
 
-namespace sinew {
+namespace sinew::test {
 
 //   power(at, v)          v . C v [W], v of all nodes [m/s]
 //   add_forces(at, v, f)  f -= C v [N] (nodes)
@@ -108,4 +108,4 @@ struct DragTerm {
 
 using DampingTerms = TypeList<DashpotTerm, ViscosityTerm, DragTerm>;
 
-}  // namespace sinew
+}  // namespace sinew::test
