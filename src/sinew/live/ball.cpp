@@ -47,7 +47,7 @@ void Ball::put(Model& model, State& state, const Path& path, double radius) {
   obstacle_.name = "the ball";
   obstacle_.center = Vec3::Zero();
   obstacle_.path = path;
-  obstacle_.radius = radius;
+  obstacle_.shape = shapes::Sphere{radius};
   obstacle_.stiffness = 1.0;  // until the shares of the surface are known
   add_obstacle(model, obstacle_);
   obstacle_.stiffness = model.obstacles.back().stiffness = pressure(model);
@@ -79,8 +79,8 @@ void Ball::follow(Model& model, State& state, double interval) {
   const double most = fastest * size_ * interval;
   const Vec3 there = to_go.norm() <= most ? wished_ : Vec3(here + most / to_go.norm() * to_go);
   const double growth = wished_radius_ * interval / growing_time;
-  const double radius =
-      std::clamp(wished_radius_, obstacle_.radius - growth, obstacle_.radius + growth);
+  const double radius = std::clamp(wished_radius_, obstacle_.soft_radius() - growth,
+                                   obstacle_.soft_radius() + growth);
   // The way up to now stays in the path: the work over a step is taken from where the ball was.
   before_ = here_;
   here_ = {state.time, here};
@@ -96,13 +96,13 @@ void Ball::hold(Model& model, State& state, double stable_step) {
   stable_step_ = stable_step;
   if (!there_) return;
   there_ = false;  // not in this model yet
-  put(model, state, obstacle_.path, obstacle_.radius);
+  put(model, state, obstacle_.path, obstacle_.soft_radius());
 }
 
 std::optional<SphereStatus> Ball::status(const Model& model, const State& state) const {
   if (!there_) return std::nullopt;
   const ObstacleReading r = read_obstacles(model, state.position, state.time).back();
-  return SphereStatus{r.center, obstacle_.radius, r.force, r.contacts, Mat3::Identity()};
+  return SphereStatus{r.center, obstacle_.soft_radius(), r.force, r.contacts, Mat3::Identity()};
 }
 
 }  // namespace sinew::live

@@ -96,7 +96,7 @@ class Simulation {
   Scene scene_;
   std::unique_ptr<Model> model_;
   Controls controls_;
-  std::unique_ptr<ContactFinder> finder_;  // of what frames mark; null: nothing but the ground can
+  std::unique_ptr<ContactFinder> finder_;  // of what frames mark; null: nothing hard can
   std::unique_ptr<Stepping> stepping_;
   RunState run_;
   State good_;  // where the last frame ended

@@ -9,9 +9,9 @@
 
 namespace sinew {
 
-// By obstacle. Soft: as the positions are (forces/obstacles.h). Hard: the force is the mean over
-// the last step, depth that of the deepest place inside, and places count as touching that are
-// inside or nearer than a thousandth of the longest edge of the bodies' surfaces.
+// By obstacle that is listed. Soft: as the positions are (forces/obstacles.h). Hard: the force is
+// the mean over the last step, depth that of the deepest place inside, and places count as touching
+// that are inside or nearer than a thousandth of the longest edge of the bodies' surfaces.
 std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
                                             Workspace& workspace);
 

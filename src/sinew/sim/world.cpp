@@ -53,7 +53,7 @@ std::vector<std::string> warnings_of(const Scene& scene, const BuildReport& repo
 // Nodes in front of those of obstacles that are meshes.
 Index own_nodes(const Model& model) {
   Index count = model.node_count();
-  for (const Obstacle& o : model.obstacles) count -= o.nodes.size();
+  for (const Obstacle& o : model.obstacles) count -= o.nodes().size();
   return count;
 }
 
@@ -65,9 +65,9 @@ const Obstacle* obstacle_named(const Model& model, const std::string& name) {
 
 // The pin that moves the nodes of an obstacle that is a mesh; null for others.
 Pin* pin_of(Model& model, const Obstacle& obstacle) {
-  if (obstacle.nodes.size() == 0) return nullptr;
+  if (obstacle.mesh() == nullptr) return nullptr;
   for (Pin& pin : model.pins)
-    if (!pin.nodes.empty() && pin.nodes.front() == obstacle.nodes.begin) return &pin;
+    if (!pin.nodes.empty() && pin.nodes.front() == obstacle.nodes().begin) return &pin;
   return nullptr;
 }
 
@@ -99,7 +99,8 @@ void World::build(Source source) {
   run_.state = initial_state(*model_);
   controls_ = initial_controls(*model_);
   stepping_ = std::make_unique<Stepping>(without_end(source_.scene), *model_, controls_, run_);
-  for (const Obstacle& o : model_->obstacles) obstacles_.push_back({next_id_++, o.name, false, {}});
+  for (const Obstacle& o : model_->obstacles)
+    if (o.listed) obstacles_.push_back({next_id_++, o.name, false, {}});
   for (const ScenePin& p : source_.scene.pins) pins_.push_back({next_id_++, p.name, false, {}});
   for (const SceneBody& body : source_.scene.bodies) {
     parts_.push_back({body.name, ""});
@@ -156,12 +157,12 @@ State World::carry_over(const Model& after, const std::string& replaced) const {
     if (before != nullptr) {
       const auto at = static_cast<std::size_t>(before - model_->obstacles.data());
       if (at < old.obstacle_force.size()) s.obstacle_force[o] = old.obstacle_force[at];
-      std::copy_n(old.position.begin() + before->nodes.begin, before->nodes.size(),
-                  s.position.begin() + now.nodes.begin);
-      std::copy_n(old.half_velocity.begin() + before->nodes.begin, before->nodes.size(),
-                  s.half_velocity.begin() + now.nodes.begin);
+      std::copy_n(old.position.begin() + before->nodes().begin, before->nodes().size(),
+                  s.position.begin() + now.nodes().begin);
+      std::copy_n(old.half_velocity.begin() + before->nodes().begin, before->nodes().size(),
+                  s.half_velocity.begin() + now.nodes().begin);
     } else {
-      for (Index i = now.nodes.begin; i < now.nodes.end; ++i)
+      for (Index i = now.nodes().begin; i < now.nodes().end; ++i)
         s.position[uz(i)] = now.path.at(s.time, after.rest_position[uz(i)]);
     }
   }
@@ -178,6 +179,7 @@ void World::rebuild(Source source, const std::string& replaced, bool other_mater
 
   std::vector<Mover> movers;
   for (Obstacle& o : model->obstacles) {
+    if (!o.listed) continue;
     const auto known = std::find_if(obstacles_.begin(), obstacles_.end(),
                                     [&](const Mover& m) { return m.name == o.name; });
     movers.push_back(known != obstacles_.end() ? *known : Mover{0, o.name, false, {}});
@@ -396,7 +398,7 @@ void World::move(ObstacleHandle handle, const Pose& pose, bool at_once) {
   }
   obstacles_[i].to.reset();
   set_path(i, Path{{to}, o.center, false});
-  for (Index n = o.nodes.begin; n < o.nodes.end; ++n)
+  for (Index n = o.nodes().begin; n < o.nodes().end; ++n)
     run_.state.position[uz(n)] = o.path.at(run_.state.time, model_->rest_position[uz(n)]);
   ++changes_;
 }

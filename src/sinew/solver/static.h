@@ -39,8 +39,8 @@ struct StaticReport {
   int load_steps = 0;
   int newton = 0;
   int products = 0;      // Hessian products taken by the conjugate gradients
-  Index contacts = 0;    // nodes that the ground pushes
-  bool within = true;    // the ground and the limits hold to their tolerances
+  Index contacts = 0;    // that push
+  bool within = true;    // contacts and limits hold to their tolerances
   bool stopped = false;  // by options.stop; the state is then the best so far
 };
 
@@ -55,9 +55,9 @@ class StaticSolver {
   // A start that is tangled (forces/inversion_recovery.h) is no guess worth keeping: the body
   // starts from its rest shape, moved rigidly to where it is.
   //
-  // The ground, without friction, and the limits hold in it (solver/constraints.h). A body that
-  // only the ground holds is put down on it first, straight along its normal, and then keeps its
-  // place along the ground as nearly as it can.
+  // Contacts, without friction, and limits hold in it (solver/constraints.h). A body that only a
+  // hard plane holds, the ground or an obstacle, is put down on it first, straight along its
+  // normal, and then keeps its place along the plane as nearly as it can.
   //
   // Where Newton's method does not get through, pins and loads are brought on in smaller steps, and
   // after two cuts the body is followed, once, as it falls to rest.
@@ -84,7 +84,7 @@ class StaticSolver {
 
   const Model& model_;
   Workspace workspace_;
-  double nudge_ = 0.0;  // see settle() [1/s2]; 0 where no body rests on the ground alone
+  double nudge_ = 0.0;  // see settle() [1/s2]; 0 where no body rests on a plane alone
   LinearSolver linear_;
   Constraints constraints_;
   std::unique_ptr<Model> softened_;  // with less stiff volume, where that helps; else none

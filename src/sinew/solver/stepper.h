@@ -30,7 +30,7 @@ struct StepReport {
   double deepest = 0.0;           // a place was left inside what it touched [m]
   double friction = 0.0;          // work of friction in contacts [J]
   int limit_sweeps = 0;           // sweeps that moved a spring
-  bool limits_met = true;         // the ground and the limits hold to their tolerances
+  bool limits_met = true;         // contacts and limits hold to their tolerances
   int recovered = 0;              // bodies with inversion recovery (forces/inversion_recovery.h)
   double stable_step = no_limit;  // what the forces of this step allow the next one [s]
 };

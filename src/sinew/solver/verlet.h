@@ -24,8 +24,8 @@ struct VerletReport {
 // letter and loses fewer digits:  w += a (h_last + h)/2,  x += h w.  The first step, with
 // h_last = 0 and w = v0, is the start x(-h) = x0 - h v0 + a0 h^2/2. Dashpots and drag see w, the
 // half-step velocity. Tangled bodies are righted (forces/inversion_recovery.h); what that changes
-// the energy by counts as work put in. After the move come the ground, then the limits; velocities
-// follow the corrected positions. A step may differ in length from the last one.
+// the energy by counts as work put in. After the move come the contacts, then the limits;
+// velocities follow the corrected positions. A step may differ in length from the last one.
 //
 // Throws Error(diverged) when a position is not finite any more or beyond 1e9 m, and names body,
 // node, spring and time; the state is then the broken one.
