@@ -11,7 +11,6 @@
 #include "sinew/base/random.h"
 #include "sinew/contact/contact_solver.h"
 #include "sinew/contact/explicit_contacts.h"
-#include "sinew/contact/ground.h"
 #include "sinew/contact/surfaces.h"
 #include "sinew/forces/assemble.h"
 #include "sinew/forces/terms.h"
@@ -98,9 +97,7 @@ void AnswerToLyingBeams(benchmark::State& state) {
   ContactFinder finder(model);
   const double reach = finder.explicit_reach();
   std::vector<Contact> found;
-  finder.find(before, s.position, s.time, s.time + h, reach, found);
-  find_ground_contacts(model, s.position, reach, found);
-  std::sort(found.begin(), found.end(), comes_before);
+  finder.find(before, s.position, s.time, s.time + h, finder.explicit_reach(), found);
   if (state.range(1) == 0) s.reactions.contacts.clear();
   ContactScratch scratch;
   ContactReport answer;

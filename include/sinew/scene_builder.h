@@ -180,7 +180,7 @@ struct ProbeDescription {
 // own choice, `stiffness` one of that stiffness; without either the obstacle is hard.
 struct ObstacleDescription {
   std::string name = {};
-  std::string shape = {};  // sphere, plane, capsule, box, mesh
+  std::string shape = {};  // as in a scene, docs/scene-format.md; empty: sphere, or mesh
   std::optional<Point> center = {};
   std::optional<double> radius = {}, length = {};
   std::optional<Point> axis = {}, size = {}, normal = {};

@@ -7,7 +7,6 @@
 #include "sinew/base/parallel.h"
 #include "sinew/base/random.h"
 #include "sinew/contact/contact_finder.h"
-#include "sinew/contact/shapes.h"
 #include "sinew/contact/touch_surface.h"
 #include "sinew/forces/obstacles.h"
 #include "tests/support/models.h"
@@ -15,7 +14,7 @@
 namespace sinew {
 namespace {
 
-Obstacle hard(ObstacleShape shape, const Vec3& center) {
+Obstacle hard(const Shape& shape, const Vec3& center) {
   Obstacle o;
   o.name = "o";
   o.shape = shape;
@@ -24,9 +23,7 @@ Obstacle hard(ObstacleShape shape, const Vec3& center) {
 }
 
 Obstacle hard_sphere(const Vec3& center, double radius) {
-  Obstacle o = hard(ObstacleShape::sphere, center);
-  o.radius = radius;
-  return o;
+  return hard(shapes::Sphere{radius}, center);
 }
 
 // A box of tissue, 0.1 m wide, of cells of 25 mm, about the origin; and what it touches.
@@ -60,7 +57,7 @@ Index count_of(const std::vector<Contact>& contacts, int nodes) {
 }
 
 TEST(Colliders, ABoxOnAPlaneTouchesWithTheNodesOfOneSide) {
-  Obstacle plane = hard(ObstacleShape::plane, Vec3(0, -0.05, 0));
+  Obstacle plane = hard(shapes::Plane{}, Vec3(0, -0.05, 0));
   plane.friction = 0.3;
   plane.restitution = 0.7;
   Scenery s({plane});
@@ -86,21 +83,20 @@ TEST(Colliders, ABoxOnAPlaneTouchesWithTheNodesOfOneSide) {
 }
 
 TEST(Colliders, WhatIsFarGivesNothing) {
-  Obstacle box = hard(ObstacleShape::box, Vec3(0, 1, 0));
-  box.half = Vec3(0.1, 0.1, 0.1);
-  Scenery s({hard(ObstacleShape::plane, Vec3(0, -1, 0)), hard_sphere(Vec3(1, 0, 0), 0.1), box});
+  Obstacle box = hard(shapes::Box{Vec3(0.1, 0.1, 0.1)}, Vec3(0, 1, 0));
+  Scenery s({hard(shapes::Plane{}, Vec3(0, -1, 0)), hard_sphere(Vec3(1, 0, 0), 0.1), box});
   EXPECT_TRUE(s.find(0.01).empty());
 }
 
 TEST(Colliders, PinnedNodesDoNotTouch) {
-  Scenery s({hard(ObstacleShape::plane, Vec3(0, 1, 0))});
+  Scenery s({hard(shapes::Plane{}, Vec3(0, 1, 0))});
   EXPECT_FALSE(s.find().empty());
   std::fill(s.model.inverse_mass.begin(), s.model.inverse_mass.end(), 0.0);
   EXPECT_TRUE(s.find().empty());
 }
 
 TEST(Colliders, AMovingTurningPlaneCarriesItsPoints) {
-  Obstacle plane = hard(ObstacleShape::plane, Vec3(0, -0.06, 0));
+  Obstacle plane = hard(shapes::Plane{}, Vec3(0, -0.06, 0));
   plane.path.keys = {{0.0}, {1.0, Vec3(0, 0.02, 0), Vec3(0, 0, 0.1)}};
   plane.path.pivot = plane.center;
   Scenery s({plane});
@@ -120,8 +116,7 @@ TEST(Colliders, AMovingTurningPlaneCarriesItsPoints) {
 
 // A thin sheet that a fast node crosses within a step: it is led back to where it came from.
 TEST(Colliders, AThinBoxIsNotTunnelledThrough) {
-  Obstacle sheet = hard(ObstacleShape::box, Vec3(0, -0.2, 0));
-  sheet.half = Vec3(1, 0.0005, 1);
+  Obstacle sheet = hard(shapes::Box{Vec3(1, 0.0005, 1)}, Vec3(0, -0.2, 0));
   Scenery s({sheet});
   s.move(Vec3::Zero(), Vec3(0.01, -1, 0));
   const auto contacts = s.find();
@@ -157,41 +152,48 @@ TEST(Colliders, AFastObstacleIsSeenTheSame) {
   }
 }
 
+// One of every solid shape, a few centimetres large.
+std::vector<Shape> small_solids() {
+  std::vector<Shape> out;
+  for_each_shape([&](const auto& shape) {
+    if constexpr (SolidShape<std::decay_t<decltype(shape)>>)
+      out.push_back(shape.from({0.04, 0.12, Vec3(0.1, 0.04, 0.12)}));
+  });
+  return out;
+}
+
 // Nothing is missed and nothing is too much: every node by the signed distance, in random places.
 TEST(Colliders, NodesAsByBruteForce) {
   std::uint64_t seed = 77;
-  for (int round = 0; round < 40; ++round) {
-    Obstacle o = hard(round % 4 == 0   ? ObstacleShape::sphere
-                      : round % 4 == 1 ? ObstacleShape::plane
-                      : round % 4 == 2 ? ObstacleShape::capsule
-                                       : ObstacleShape::box,
-                      0.12 * (2.0 * random_point(seed++) - Vec3::Ones()));
-    o.radius = 0.04;
-    o.half = Vec3(0.05, 0.02, 0.06);
-    const double angle = 3.0 * random_number(seed++);
-    const Vec3 axis = random_point(seed++).normalized();
-    o.rotation = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
-    Scenery s({o});
-    const Vec3 step = 0.002 * (2.0 * random_point(seed++) - Vec3::Ones());
-    s.move(Vec3::Zero(), step);
-    const double reach = 0.003;
-    Index expected = 0;
-    const Pose pose = obstacle_pose(o, 0.0);
-    for (const Index n : s.model.skin.nodes) {
-      const Vec3 q = pose.own(s.to[uz(n)]);
-      const double d = o.shape == ObstacleShape::sphere    ? sphere_surface(q, o.radius).distance
-                       : o.shape == ObstacleShape::plane   ? plane_surface(q).distance
-                       : o.shape == ObstacleShape::capsule ? capsule_surface(q, 0.06, 0.04).distance
-                                                           : box_surface(q, o.half).distance;
-      expected += d < reach ? 1 : 0;
-    }
-    EXPECT_EQ(count_of(s.find(reach), 1), expected) << "round " << round;
-    const ColliderReading reading = read_collider(s.model, o, s.to, 0.0, reach);
-    EXPECT_EQ(reading.contacts, expected);
-    for (const Contact& c : s.find(reach)) {
-      EXPECT_NEAR(c.gap, contact_gap(c, s.to), 1e-16);
-      if (c.count == 1) {
-        EXPECT_GE(c.gap, -reading.depth - 1e-3);
+  for (int round = 0; round < 10; ++round) {
+    for (const Shape& shape : small_solids()) {
+      Obstacle o = hard(shape, 0.12 * (2.0 * random_point(seed++) - Vec3::Ones()));
+      const double angle = 3.0 * random_number(seed++);
+      const Vec3 axis = random_point(seed++).normalized();
+      o.rotation = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+      Scenery s({o});
+      const Vec3 step = 0.002 * (2.0 * random_point(seed++) - Vec3::Ones());
+      s.move(Vec3::Zero(), step);
+      const double reach = 0.003;
+      Index expected = 0;
+      double depth = 0.0;
+      const Pose pose = obstacle_pose(o, 0.0);
+      for (const Index n : s.model.skin.nodes) {
+        const double d = std::visit(
+            Overloaded{
+                [](const shapes::Mesh&) { return no_limit; },
+                [&](const auto& solid) { return solid.surface(pose.own(s.to[uz(n)])).distance; }},
+            shape);
+        expected += d < reach ? 1 : 0;
+        depth = std::max(depth, -d);
+      }
+      const std::vector<Contact> contacts = s.find(reach);
+      EXPECT_EQ(count_of(contacts, 1), expected) << word_of(shape) << ", round " << round;
+      for (const Contact& c : contacts) {
+        EXPECT_NEAR(c.gap, contact_gap(c, s.to), 1e-16);
+        if (c.count == 1) {
+          EXPECT_GE(c.gap, -depth - 1e-3);
+        }
       }
     }
   }
@@ -202,9 +204,7 @@ TEST(Colliders, ANeedleDoesNotSlipBetweenNodes) {
   std::uint64_t seed = 5;
   for (int round = 0; round < 50; ++round) {
     const double radius = 0.001;
-    Obstacle needle = hard(ObstacleShape::capsule, Vec3::Zero());
-    needle.radius = radius;
-    needle.half.z() = 0.05;
+    Obstacle needle = hard(shapes::Capsule{radius, 0.05}, Vec3::Zero());
     // Its axis along y, its tip at a random place 1 mm above the top at y = 0.05.
     needle.rotation = Eigen::AngleAxisd(M_PI / 2, Vec3::UnitX()).toRotationMatrix();
     const Vec3 place = random_point(seed++);
@@ -231,8 +231,7 @@ TEST(Colliders, ANeedleDoesNotSlipBetweenNodes) {
 
 // The corner of a box, pressed between nodes of a flat side.
 TEST(Colliders, TheCornerOfABoxDoesNotSlipBetweenNodes) {
-  Obstacle box = hard(ObstacleShape::box, Vec3::Zero());
-  box.half = Vec3(0.02, 0.02, 0.02);
+  Obstacle box = hard(shapes::Box{Vec3(0.02, 0.02, 0.02)}, Vec3::Zero());
   // A diagonal upright.
   box.rotation =
       Eigen::Quaterniond::FromTwoVectors(Vec3(1, 1, 1), Vec3(0, 1, 0)).toRotationMatrix();
@@ -253,9 +252,7 @@ TEST(Colliders, TheCornerOfABoxDoesNotSlipBetweenNodes) {
 
 // A thin rod lying across an edge of the body: edge against rod, no node and no triangle.
 TEST(Colliders, ARodAcrossAnEdgeTouchesTheEdge) {
-  Obstacle rod = hard(ObstacleShape::capsule, Vec3::Zero());
-  rod.radius = 0.002;
-  rod.half.z() = 0.05;
+  Obstacle rod = hard(shapes::Capsule{0.002, 0.05}, Vec3::Zero());
   rod.rotation =
       Eigen::Quaterniond::FromTwoVectors(Vec3::UnitZ(), Vec3(1, -1, 0)).toRotationMatrix();
   const Vec3 out = Vec3(1, 1, 0).normalized();
@@ -276,8 +273,7 @@ TEST(Colliders, LargeSpheresTouchWithNodesOnly) {
 }
 
 TEST(Colliders, KeysAreSortedAndDifferent) {
-  Obstacle box = hard(ObstacleShape::box, Vec3(0.03, 0.03, 0.03));
-  box.half = Vec3(0.05, 0.05, 0.05);
+  Obstacle box = hard(shapes::Box{Vec3(0.05, 0.05, 0.05)}, Vec3(0.03, 0.03, 0.03));
   Scenery s({hard_sphere(Vec3(0.01, 0.065, 0.004), 0.03), box, hard_sphere(Vec3(0, 0, 0), 0.06)});
   const auto contacts = s.find(0.01);
   ASSERT_GT(contacts.size(), 50U);
@@ -285,8 +281,7 @@ TEST(Colliders, KeysAreSortedAndDifferent) {
 }
 
 TEST(Colliders, DegenerateTrianglesGiveNumbers) {
-  Obstacle box = hard(ObstacleShape::box, Vec3(0, 0.05, 0));
-  box.half = Vec3(0.05, 0.05, 0.05);
+  Obstacle box = hard(shapes::Box{Vec3(0.05, 0.05, 0.05)}, Vec3(0, 0.05, 0));
   Scenery s({box, hard_sphere(Vec3(0, 0.02, 0), 0.02)});
   for (Vec3& x : s.to) x = Vec3(0, 0.02, 0);
   for (const Contact& c : s.find(0.01)) {

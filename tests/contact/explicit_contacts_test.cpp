@@ -12,7 +12,7 @@
 namespace sinew {
 namespace {
 
-constexpr double h = 1e-3;
+constexpr double step_length = 1e-3;
 
 // A box of tissue that stands on the plane y = 0; what it is predicted to do is made up.
 struct Standing {
@@ -20,7 +20,7 @@ struct Standing {
     model = test::tissue_box({}, {2, 2, 2});
     Obstacle floor;
     floor.name = "floor";
-    floor.shape = ObstacleShape::plane;
+    floor.shape = shapes::Plane{};
     floor.center = Vec3(0, -0.05, 0);
     floor.friction = friction;
     add_obstacle(model, floor);
@@ -30,7 +30,7 @@ struct Standing {
     build_skin(model);
     finish(model);
     state = initial_state(model);
-    state.last_step = h;
+    state.last_step = step_length;
     before = state.position;
     force.assign(before.size(), Vec3(0, -1, 0));
     for (Index i = 0; i < model.body_node_count(); ++i)
@@ -40,8 +40,8 @@ struct Standing {
   void fall(double depth) {
     for (std::size_t i = 0; i < before.size(); ++i) {
       state.position[i] = before[i] - Vec3(0, depth, 0);
-      state.half_velocity[i] = Vec3(0, -depth / h, 0);
-      force[i] = Vec3(0, -depth / (h * h * model.inverse_mass[i]), 0);
+      state.half_velocity[i] = Vec3(0, -depth / step_length, 0);
+      force[i] = Vec3(0, -depth / (step_length * step_length * model.inverse_mass[i]), 0);
     }
   }
   // The node was held by that multiple of its force in the step before.
@@ -53,7 +53,9 @@ struct Standing {
     p.push = multiple * force[uz(node)].norm() * way;
     state.reactions.contacts.push_back(p);
   }
-  ContactReport step(ExplicitContacts& contacts) { return contacts.step(before, force, h, state); }
+  ContactReport step(ExplicitContacts& contacts) {
+    return contacts.step(before, force, step_length, state);
+  }
   ContactReport step() {
     ExplicitContacts contacts(model);
     return step(contacts);

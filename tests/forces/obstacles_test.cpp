@@ -69,8 +69,8 @@ Model pressed_box() {
   m.pins = {{"floor", test::nodes_at(m, 1, -0.05), {}}};
   Path path;
   path.keys = {{1.0, Vec3(0, -0.02, 0), Vec3::Zero()}};
-  add_obstacle(m, {"top", Vec3(0.01, 0.07, 0), 0.04, 1e8, path});
-  add_obstacle(m, {"side", Vec3(0.09, 0, 0.01), 0.05, 2e8});
+  add_obstacle(m, test::soft_sphere("top", Vec3(0.01, 0.07, 0), 0.04, 1e8, path));
+  add_obstacle(m, test::soft_sphere("side", Vec3(0.09, 0, 0.01), 0.05, 2e8));
   finish(m);
   return m;
 }

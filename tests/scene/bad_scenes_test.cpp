@@ -241,10 +241,10 @@ const std::vector<Bad>& bad_scenes() {
        "  remedy: add size (docs/scene-format.md)"},
       {BEAM "[obstacle.o]\nshape = \"plane\"\ncenter = [0, 0, 0]\nradius = 1\n",
        "scene.toml:6:10: 'radius' in [obstacle.o] does not go with shape = \"plane\"\n"
-       "  remedy: remove it; it belongs to: sphere, capsule"},
+       "  remedy: remove it; it belongs to: sphere, capsule, cylinder"},
       {BEAM "[obstacle.o]\ncenter = [0, 0, 0]\nradius = 1\nrotation = [0, 90, 0]\n",
        "scene.toml:6:12: 'rotation' in [obstacle.o] does not go with shape = \"sphere\"\n"
-       "  remedy: remove it; it belongs to: plane, capsule, box, mesh"},
+       "  remedy: remove it; it belongs to: plane, capsule, box, cylinder, mesh"},
       {BEAM "[obstacle.o]\nshape = \"plane\"\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\n"
             "rotation = [0, 90, 0]\n",
        "scene.toml:7:12: [obstacle.o] has both normal and rotation\n"

@@ -204,7 +204,7 @@ TEST(Build, ObstaclesTakeTheirStiffnessFromTheBodies) {
   const Model m = build(box + ball + soft + "path = [{ time = 1, move = [0, -1, 0] }]\n");
   ASSERT_EQ(m.obstacles.size(), 1U);
   EXPECT_EQ(m.obstacles[0].name, "o");
-  EXPECT_EQ(m.obstacles[0].radius, 0.05);
+  EXPECT_EQ(m.obstacles[0].soft_radius(), 0.05);
   EXPECT_DOUBLE_EQ(m.obstacles[0].stiffness, 200 * 1e4 / (1 - 0.16) / 0.05);
   EXPECT_EQ(m.obstacles[0].path.pivot, Vec3(0, 1, 2));
   EXPECT_EQ(m.obstacles[0].path.at(1.0, m.obstacles[0].center), Vec3(0, 0, 2));
@@ -238,12 +238,11 @@ TEST(Build, ObstaclesAreHardUnlessTheyHaveAStiffness) {
   EXPECT_FALSE(m.skin.triangles.empty());
   EXPECT_EQ(m.obstacles[0].friction, 0.5);
   const Obstacle& table = m.obstacles[1];
-  EXPECT_EQ(table.shape, ObstacleShape::box);
-  EXPECT_EQ(table.half, Vec3(1, 0.25, 2));
+  EXPECT_EQ(std::get<shapes::Box>(table.shape).half, Vec3(1, 0.25, 2));
   EXPECT_LT((table.rotation.col(0) - Vec3::UnitY()).norm(), 1e-15);
   EXPECT_EQ(table.friction, 0.1);
   EXPECT_EQ(table.restitution, 0.7);
-  EXPECT_EQ(m.obstacles[2].half.z(), 0.4);
+  EXPECT_EQ(std::get<shapes::Capsule>(m.obstacles[2].shape).half, 0.4);
   EXPECT_LT((m.obstacles[2].rotation.col(2) - Vec3::UnitX()).norm(), 1e-15);
   EXPECT_LT((m.obstacles[3].rotation.col(1) + Vec3::UnitX()).norm(), 1e-15);
 }
@@ -418,7 +417,12 @@ TEST(Build, FillsInWhatActs) {
   EXPECT_TRUE(m.pins[0].path.pivot.isApprox(Vec3(0, 2.5, 0)));  // the mean
   EXPECT_EQ(m.loads[0].nodes, (std::vector<Index>{m.bodies[1].nodes.begin + 3}));
   EXPECT_EQ(m.loads[0].end, 2.0);
-  EXPECT_EQ(m.ground->point, Vec3(0, -1, 0));
+  ASSERT_FALSE(m.obstacles.empty());
+  const Obstacle& ground = m.obstacles.back();
+  EXPECT_TRUE(std::holds_alternative<shapes::Plane>(ground.shape));
+  EXPECT_EQ(ground.center, Vec3(0, -1, 0));
+  EXPECT_EQ(ground.rotation, Mat3::Identity());
+  EXPECT_FALSE(ground.listed);
   EXPECT_EQ(m.inverse_mass[static_cast<std::size_t>(m.pins[0].nodes[0])], 0.0);
 }
 

@@ -32,16 +32,16 @@ TEST(RigidMesh, IsReadPlacedAndGivenToTheModel) {
   const Index first = m.body_node_count();
   ASSERT_EQ(m.obstacles.size(), 1U);
   const Obstacle& o = m.obstacles[0];
-  EXPECT_EQ(o.shape, ObstacleShape::mesh);
-  EXPECT_EQ(o.nodes.begin, first);
-  EXPECT_EQ(o.nodes.size(), 4);       // one vertex twice
-  ASSERT_EQ(o.triangles.size(), 2U);  // one without area
-  EXPECT_EQ(o.triangles[0], (Triangle{first, first + 1, first + 2}));
+  ASSERT_NE(o.mesh(), nullptr);
+  EXPECT_EQ(o.mesh()->nodes.begin, first);
+  EXPECT_EQ(o.mesh()->nodes.size(), 4);       // one vertex twice
+  ASSERT_EQ(o.mesh()->triangles.size(), 2U);  // one without area
+  EXPECT_EQ(o.mesh()->triangles[0], (Triangle{first, first + 1, first + 2}));
   EXPECT_EQ(m.rest_position[uz(first + 2)], Vec3(1, -1, 0));
   EXPECT_EQ(m.inverse_mass[uz(first)], 0.0);
   EXPECT_EQ(m.pins.back().path.at(1.0, Vec3(1, -1, 0)), Vec3(1, 0, 0));
   EXPECT_EQ(m.surface.owner_count(), 2);
-  EXPECT_EQ(build(box + roof + "flip = true\n").obstacles[0].triangles[0],
+  EXPECT_EQ(build(box + roof + "flip = true\n").obstacles[0].mesh()->triangles[0],
             (Triangle{first, first + 2, first + 1}));
 
   const std::string wrong =
@@ -63,7 +63,7 @@ TEST(RigidMesh, TheBowlIsClosed) {
   const Model m = build("[body.b]\nshape = \"box\"\ncells = [2, 2, 2]\n[obstacle.bowl]\nmesh = \"" +
                         test::source_path("scenes/meshes/bowl.off") + "\"\n");
   double volume = 0.0;
-  for (const Triangle& t : m.obstacles[0].triangles)
+  for (const Triangle& t : m.obstacles[0].mesh()->triangles)
     volume +=
         m.rest_position[uz(t[0])].dot(m.rest_position[uz(t[1])].cross(m.rest_position[uz(t[2])])) /
         6.0;

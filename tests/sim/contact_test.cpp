@@ -12,6 +12,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/scene/build.h"
 #include "sinew/sim/checkpoint.h"
+#include "sinew/sim/obstacle_reading.h"
 #include "sinew/sim/stepping.h"
 #include "tests/support/source_dir.h"
 
@@ -235,6 +236,31 @@ TEST(Contact, WhatLiesStillHasNoKineticEnergy) {
                        r.stepping.forces().evaluate(initial_controls(r.model), r.run.state).force);
   EXPECT_LT(e.kinetic, 1e-3 * e.elastic);
   EXPECT_NEAR(e.total(), 0.0, 0.02 * std::abs(e.gravity));
+}
+
+// [ground] is a plane obstacle that no table lists.
+TEST(Contact, TheGroundAndAPlaneObstacleGiveTheSameBitsWithEveryStepper) {
+  const std::string slope = "normal = [0.1, 1, 0.05]\nfriction = 0.4\nrestitution = 0.3\n";
+  const std::string flat = "friction = 0.4\n";
+  for (const std::string stepper : {"verlet", "implicit", "static"}) {
+    const std::string body =
+        "duration = 0.2\nstepper = \"" + stepper +
+        "\"\n[body.box]\nshape = \"box\"\nsize = [0.1, 0.1, 0.1]\ncells = [3, 3, 3]\n"
+        "position = [0, 0.06, 0]\nvelocity = [0.2, 0, 0]\nyoung = 20e3\n";
+    const std::string plane = stepper == "static" ? flat : slope;
+    Trial ground(parse_scene(body + "[ground]\n" + plane, "ground.toml", "."));
+    Trial obstacle(
+        parse_scene(body + "[obstacle.floor]\nshape = \"plane\"\ncenter = [0, 0, 0]\n" + plane,
+                    "plane.toml", "."));
+    ground.to_the_end();
+    obstacle.to_the_end();
+    EXPECT_EQ(ground.run.state.hash(), obstacle.run.state.hash()) << stepper;
+    EXPECT_GT(ground.run.contacts, 0) << stepper;
+    ContactFinder on_ground(ground.model);
+    ContactFinder on_plane(obstacle.model);
+    EXPECT_EQ(read_obstacles(ground.model, ground.run.state, &on_ground).size(), 0U);
+    EXPECT_EQ(read_obstacles(obstacle.model, obstacle.run.state, &on_plane).size(), 1U);
+  }
 }
 
 }  // namespace

@@ -117,7 +117,7 @@ TEST(World, GrabsAndToolsStayWhenValuesChange) {
   EXPECT_EQ(w.controls().gravity, Vec3(0, 0, 1));
   EXPECT_EQ(w.current_scene().gravity, Vec3(0, 0, 1));
   EXPECT_LT((w.target(grab) - hand).norm(), 1e-12);
-  EXPECT_EQ(w.model().obstacles[w.index_of(tool)].radius, 0.03);
+  EXPECT_EQ(w.model().obstacles[w.index_of(tool)].soft_radius(), 0.03);
   EXPECT_THROW(w.change({"box.young=-1"}), Error);
   EXPECT_EQ(w.scene().bodies[0].material.young, 5e4);
   w.forget_steps();

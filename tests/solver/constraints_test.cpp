@@ -8,6 +8,7 @@
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/base/random.h"
+#include "sinew/contact/colliders.h"
 #include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/strain_limits.h"
@@ -36,10 +37,16 @@ Material soft(double young = 2e4, double poisson = 0.4) {
   return material;
 }
 
+void stand_on_ground(Model& m, const Vec3& point, const Vec3& normal, double restitution,
+                     double friction) {
+  m.obstacles.push_back(make_ground(point, normal, restitution, friction));
+  build_skin(m);
+}
+
 // A box of 0.1 m whose lowest nodes are `height` above the ground y = 0.
 Model box_above_ground(const Material& material, double height, double friction, int cells = 2) {
   Model m = tissue_box(material, {cells, cells, cells});
-  m.ground = Ground{Vec3(0, -0.05 - height, 0), Vec3::UnitY(), 0.0, friction};
+  stand_on_ground(m, Vec3(0, -0.05 - height, 0), Vec3::UnitY(), 0.0, friction);
   finish(m);
   return m;
 }
@@ -47,7 +54,8 @@ Model box_above_ground(const Material& material, double height, double friction,
 double lowest(const Model& m, const State& s) {
   double low = no_limit;
   for (Index i = 0; i < m.body_node_count(); ++i) {
-    low = std::min(low, m.ground->normal.dot(s.position[uz(i)] - m.ground->point));
+    const Obstacle& ground = m.obstacles.back();
+    low = std::min(low, ground.rotation.col(1).dot(s.position[uz(i)] - ground.center));
   }
   return low;
 }
@@ -103,7 +111,7 @@ struct Crumpled {
   std::vector<Vec3> from;
 
   Crumpled() {
-    model.ground = Ground{Vec3(0, -0.03, 0), Vec3(0.1, 1, 0).normalized(), 0.0, 0.5};
+    stand_on_ground(model, Vec3(0, -0.03, 0), Vec3(0.1, 1, 0).normalized(), 0.0, 0.5);
     for (std::size_t s = 0; s < model.springs.size(); ++s) {
       model.stretch_limit[s] = model.compress_limit[s] = 0.05;
     }
@@ -115,7 +123,13 @@ struct Crumpled {
     for (std::size_t i = 0; i < from.size(); ++i) {
       state.position[i] += 0.01 * (random_point(i) - Vec3::Constant(0.5));
     }
-    state.reactions.ground.assign(from.size(), Vec3(0.02, 0.2, 0.03));
+    for (const Index i : model.skin.nodes) {
+      if (model.inverse_mass[uz(i)] == 0.0) continue;
+      state.reactions.contacts.push_back({{ContactKind::node_shape, 0, i, -1},
+                                          {i, -1, -1, -1},
+                                          {1.0, 0.0, 0.0, 0.0},
+                                          Vec3(0.02, 0.2, 0.03)});
+    }
     state.reactions.tension.assign(model.limited.size(), 0.3);
     state.reactions.pressure.assign(model.cell_volume.size(), -40.0);
   }
@@ -200,7 +214,7 @@ TEST(Constraints, ADroppedBoxComesToRestOnTheGround) {
     EXPECT_NEAR(lowest(m, s), 0.0, 1e-4 * 0.05);
     Vec3 push = Vec3::Zero();
     double speed = 0.0;
-    for (const Vec3& p : s.reactions.ground) push += p;
+    for (const ContactPush& p : s.reactions.contacts) push += p.push;
     for (const Vec3& v : s.half_velocity) speed = std::max(speed, v.norm());
     EXPECT_LE(speed, 1e-3);
     EXPECT_NEAR(push.y(), weight(m), 1e-3 * weight(m));
@@ -259,7 +273,7 @@ TEST(Constraints, ThePlasticImpactOfAMassIsAllDissipated) {
   Model m =
       point_masses({{Vec3(0, 0, 0), 1.0, Vec3(0, -3, 0)}, {Vec3(1, 0, 0), 1.0, Vec3(0, -3, 0)}});
   m.start_gravity = Vec3(0, -10, 0);
-  m.ground = Ground{Vec3(0, -0.5, 0), Vec3::UnitY(), 0.0, 0.5};
+  stand_on_ground(m, Vec3(0, -0.5, 0), Vec3::UnitY(), 0.0, 0.5);
   finish(m);
   State s = initial_state(m);
   ImplicitStepper stepper(m);
@@ -322,7 +336,7 @@ TEST(Constraints, ABoxRestsOnTheGroundWhereItIsPutDown) {
   EXPECT_EQ(report.contacts, 9);
   EXPECT_NEAR(lowest(m, s), 0.0, 1e-4 * 0.05);
   Vec3 push = Vec3::Zero(), drift = Vec3::Zero();
-  for (const Vec3& p : s.reactions.ground) push += p;
+  for (const ContactPush& p : s.reactions.contacts) push += p.push;
   for (std::size_t i = 0; i < s.position.size(); ++i) {
     drift += m.mass[i] * (s.position[i] - m.rest_position[i]);
   }
@@ -373,7 +387,7 @@ Model limited_box(int cells) {
   material.volume_limit = 0.002;
   Model m = tissue_box(material, {cells, cells, cells});
   std::fill(m.stretch_limit.begin(), m.stretch_limit.end(), 0.01);
-  m.ground = Ground{Vec3(0, -0.05, 0), Vec3::UnitY(), 0.0, 0.5};
+  stand_on_ground(m, Vec3(0, -0.05, 0), Vec3::UnitY(), 0.0, 0.5);
   finish(m);
   return m;
 }

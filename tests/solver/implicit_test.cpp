@@ -191,7 +191,7 @@ TEST(Implicit, TheWorkOfAnObstacleIsInTheEnergyAccount) {
   m.start_gravity = Vec3::Zero();
   Path path;
   path.keys = {{0.0, Vec3::Zero()}, {0.2, Vec3(0, 0.012, 0)}};
-  add_obstacle(m, {"ball", Vec3(0, -0.085, 0), 0.035, 1e7, path});
+  add_obstacle(m, test::soft_sphere("ball", Vec3(0, -0.085, 0), 0.035, 1e7, path));
   finish(m);
   const State s = run(m, 0.001, 300, Scheme::sdirk2);  // backward Euler loses energy by itself
   const Energies e = test::energies_at(m, initial_controls(m), s);

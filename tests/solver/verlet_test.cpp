@@ -279,7 +279,7 @@ TEST(Verlet, AMovingObstaclePressesAndItsWorkIsCounted) {
   Path path;
   path.keys = {{0.2, Vec3(0, -0.02, 0), Vec3::Zero()}};
   path.smooth = true;
-  add_obstacle(m, {"ball", Vec3(0.01, 0.09, 0), 0.04, 2e8, path});
+  add_obstacle(m, test::soft_sphere("ball", Vec3(0.01, 0.09, 0), 0.04, 2e8, path));
   finish(m);
   VerletStepper stepper(m, Precision::double_);
   State s = initial_state(m);
@@ -300,7 +300,7 @@ TEST(Verlet, AnElasticImpactOnAnObstacleKeepsTheEnergy) {
   Model m = tissue_box({.law = Law::lloyd, .young = 1e4, .damping_ratio = 0.0}, {3, 3, 3});
   m.start_gravity = Vec3::Zero();
   for (Vec3& v : m.start_velocity) v = Vec3(0, -0.5, 0);
-  add_obstacle(m, {"ball", Vec3(0.01, -0.1, 0), 0.04, 2e8});
+  add_obstacle(m, test::soft_sphere("ball", Vec3(0.01, -0.1, 0), 0.04, 2e8));
   finish(m);
   VerletStepper stepper(m, Precision::double_);
   State s = initial_state(m);

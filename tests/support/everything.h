@@ -18,7 +18,7 @@ struct Everything {
     for (Index i = 0; i + 1 < 8; i += 2) add_attachment(model, i, 26 - i, 30.0 + i, 0.0, 0.08);
     add_tie(model, 26, model.tets.front(), 40.0);
     model.loads.push_back({"push", {13, 14}, Vec3(0.1, -0.2, 0.3)});
-    add_obstacle(model, {"ball", Vec3(0.0, 0.08, 0.0), 0.05, 2e4});
+    add_obstacle(model, soft_sphere("ball", Vec3(0.0, 0.08, 0.0), 0.05, 2e4));
     model.pins.push_back({"base", nodes_at(model, 1, -0.05), {}});
     finish(model);
     controls.gravity = Vec3(0.5, -9.0, 1.0);

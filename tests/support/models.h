@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 #include <vector>
 
 #include "sinew/base/random.h"
@@ -53,6 +54,18 @@ inline void add_limited(Model& m, Index a, Index b, double k, double l0, double 
   add_attachment(m, a, b, k, 0.0, l0);
   m.stretch_limit.back() = stretch;
   m.compress_limit.back() = compress;
+}
+
+// An obstacle that presses: a soft sphere.
+inline Obstacle soft_sphere(const std::string& name, const Vec3& center, double radius,
+                            double stiffness, const Path& path = {}) {
+  Obstacle o;
+  o.name = name;
+  o.center = center;
+  o.shape = shapes::Sphere{radius};
+  o.stiffness = stiffness;
+  o.path = path;
+  return o;
 }
 
 // A box of tissue of one material.

@@ -30,10 +30,10 @@ export interface QuantityInfo {
 export interface ObstacleInfo {
   name: string;
   radius: number; // of a ball around it [m]; 0 of a plane
-  shape: "sphere" | "plane" | "capsule" | "box" | "mesh";
-  half: Vec; // box: half sides; capsule: z, half the distance of its ends' centres [m]
-  vertices?: number[]; // mesh: x, y, z, ... in its own axes [m]
-  triangles?: number[]; // mesh: indices of vertices
+  shape: string; // "sphere" and "plane" are drawn by name, others by their triangles
+  vertices: number[]; // x, y, z, ... in its own axes [m]
+  normals: number[]; // x, y, z, ... of the vertices; empty: those of the triangles
+  triangles: number[]; // indices of vertices
 }
 
 /** A half of the tets that is not shown: those whose middle X at rest has normal · X > offset [m]. */

@@ -14,13 +14,12 @@ const PLANE = 4; // diagonals of the bodies that a plane is shown wide
 
 /** The geometry of an obstacle other than a sphere, in its own axes and in metres. */
 function geometryOf(o: ObstacleInfo, diagonal: number): THREE.BufferGeometry | null {
-  if (o.shape === "box") return new THREE.BoxGeometry(2 * o.half[0], 2 * o.half[1], 2 * o.half[2]);
-  if (o.shape === "capsule") return new THREE.CapsuleGeometry(o.half[0], 2 * o.half[2], 16, 40).rotateX(Math.PI / 2);
   if (o.shape === "plane") return new THREE.CircleGeometry((PLANE / 2) * diagonal, 64).rotateX(-Math.PI / 2);
-  if (o.shape !== "mesh") return null;
+  if (o.shape === "sphere") return null;
   const soup = new THREE.BufferGeometry();
-  soup.setAttribute("position", new THREE.Float32BufferAttribute(o.vertices ?? [], 3));
-  soup.setIndex(o.triangles ?? []);
+  soup.setAttribute("position", new THREE.Float32BufferAttribute(o.vertices, 3));
+  soup.setIndex(o.triangles);
+  if (o.normals.length > 0) return soup.setAttribute("normal", new THREE.Float32BufferAttribute(o.normals, 3));
   const flat = soup.toNonIndexed();
   flat.computeVertexNormals();
   return flat;

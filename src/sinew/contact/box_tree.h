@@ -1,5 +1,5 @@
-// Which boxes of a set overlap a given one: a binary tree whose shape is made once and whose boxes
-// follow the items as they move.
+// A tree of bounding boxes: finds the boxes of a set that overlap a given one. The tree is built
+// once; its boxes follow the items as they move.
 #pragma once
 
 #include <array>

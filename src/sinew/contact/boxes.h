@@ -1,4 +1,4 @@
-// Boxes side by side in memory, for the comparison of one with many (SIMD).
+// Boxes in a structure of arrays, to compare one with many (SIMD).
 #pragma once
 
 #include <array>

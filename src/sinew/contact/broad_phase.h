@@ -1,4 +1,4 @@
-// Parts of a surface, some tens of triangles each, and what is near one of them.
+// Parts of a surface, some tens of triangles each, and the lists of features near a part.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
@@ -31,8 +31,8 @@ struct NeighbourList {
   void clear();
 };
 
-// Triangles that lie together, the nodes and edges that are theirs (each is of one part), and how
-// all nodes of its triangles have moved.
+// A group of adjacent triangles with its nodes and edges (each belongs to one part), and a bound on
+// the motion of all nodes of its triangles.
 struct SurfacePart {
   Index owner = 0;
   std::vector<Index> nodes;      // node slots, rising

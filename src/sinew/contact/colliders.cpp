@@ -4,84 +4,34 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <type_traits>
+#include <variant>
 
 #include "sinew/base/parallel.h"
 #include "sinew/contact/rods.h"
-#include "sinew/contact/shapes.h"
 #include "sinew/mesh/surface.h"
 
 namespace sinew {
 namespace {
 
-// ---- the shape of an obstacle, in its own frame ----
-
-SurfacePoint surface_of(const Obstacle& o, const Vec3& q) {
-  switch (o.shape) {
-    case ObstacleShape::plane:
-      return plane_surface(q);
-    case ObstacleShape::capsule:
-      return capsule_surface(q, o.half.z(), o.radius);
-    case ObstacleShape::box:
-      return box_surface(q, o.half);
-    case ObstacleShape::sphere:
-      return sphere_surface(q, o.radius);
-    case ObstacleShape::mesh:  // no formula: contact/surfaces.h finds its contacts
-      break;
-  }
-  return {};
-}
-
-std::optional<double> enters(const Obstacle& o, const Vec3& q0, const Vec3& q1) {
-  switch (o.shape) {
-    case ObstacleShape::plane:
-      return enters_plane(q0, q1);
-    case ObstacleShape::capsule:
-      return enters_capsule(q0, q1, o.half.z(), o.radius);
-    case ObstacleShape::box:
-      return enters_box(q0, q1, o.half);
-    case ObstacleShape::sphere:
-      return enters_sphere(q0, q1, o.radius);
-    case ObstacleShape::mesh:
-      break;
-  }
-  return {};
-}
-
-// Its half sides along the world's axes.
-Vec3 extent(const Obstacle& o, const Mat3& turn) {
-  const Mat3 m = turn.cwiseAbs();
-  switch (o.shape) {
-    case ObstacleShape::capsule:
-      return m.col(2) * o.half.z() + Vec3::Constant(o.radius);
-    case ObstacleShape::box:
-      return m * o.half;
-    case ObstacleShape::sphere:
-      return Vec3::Constant(o.radius);
-    case ObstacleShape::plane:  // without bounds: nobody asks for its box
-    case ObstacleShape::mesh:
-      break;
-  }
-  return Vec3::Zero();
-}
-
-double farthest(const Obstacle& o) {
-  return o.shape == ObstacleShape::box ? o.half.norm() : o.radius + o.half.z();
-}
-
-// A hard obstacle over a step.
+// A hard obstacle with a shape over a step.
+template <SolidShape S>
 struct Moving {
   const Obstacle* obstacle = nullptr;
+  const S* shape = nullptr;
   Index index = -1;
   Pose before, after;
-  Eigen::AlignedBox3d box;  // around its whole way, with the reach; not of a plane
+  Eigen::AlignedBox3d box;  // around its whole way, with the reach; infinite for a plane
 };
 
-Moving moving(const Obstacle& o, Index index, double t0, double t1, double reach) {
-  Moving m{&o, index, obstacle_pose(o, t0), obstacle_pose(o, t1), {}};
+template <SolidShape S>
+Moving<S> moving(const Obstacle& o, const S& shape, Index index, double t0, double t1,
+                 double reach) {
+  Moving<S> m{&o, &shape, index, obstacle_pose(o, t0), obstacle_pose(o, t1), {}};
   const bool turns = !m.before.turn.isApprox(m.after.turn, 0.0);
   for (const Pose* pose : {&m.before, &m.after}) {
     // What turns may stand out in between by the arrow of an arc: its whole ball is enough.
-    const Vec3 half = turns ? Vec3::Constant(farthest(o)) : extent(o, pose->turn);
+    const Vec3 half = turns ? Vec3::Constant(shape.farthest()) : shape.extent(pose->turn);
     m.box.extend(pose->center - half - Vec3::Constant(reach));
     m.box.extend(pose->center + half + Vec3::Constant(reach));
   }
@@ -92,19 +42,20 @@ Moving moving(const Obstacle& o, Index index, double t0, double t1, double reach
 
 // The surface that a node going from q0 to q1 (own frame) has to stay outside of, or none: the
 // nearest at q1 if that is on the side that it came from, else where it came in.
-std::optional<SurfacePoint> wall_for(const Obstacle& o, const Vec3& q0, const Vec3& q1,
-                                     double reach) {
-  const SurfacePoint last = surface_of(o, q1);
+template <SolidShape S>
+std::optional<shapes::SurfacePoint> wall_for(const S& shape, const Vec3& q0, const Vec3& q1,
+                                             double reach) {
+  const shapes::SurfacePoint last = shape.surface(q1);
   const bool within = last.distance < reach;
   if (!within && last.distance > (q1 - q0).norm()) return {};
 
-  const SurfacePoint first = surface_of(o, q0);
+  const shapes::SurfacePoint first = shape.surface(q0);
   const bool through = last.distance >= 0.0;  // if it was inside at all, it has come out again
-  std::optional<SurfacePoint> side;
+  std::optional<shapes::SurfacePoint> side;
   if (first.distance <= 0.0) {
     if (!through || first.normal.dot(last.normal) < 0.0) side = first;
-  } else if (const auto s = enters(o, q0, q1)) {
-    side = surface_of(o, q0 + *s * (q1 - q0));
+  } else if (const auto s = shape.enters(q0, q1)) {
+    side = shape.surface(q0 + *s * (q1 - q0));
   }
   if (!side) return within ? std::optional(last) : std::nullopt;
   const bool agree = side->normal.dot(last.normal) > 0.5 ||
@@ -118,11 +69,12 @@ double moment_of(double before, double after) {
   return before <= 0.0 ? 0.0 : before / (before - after);
 }
 
-void add_node(const Moving& m, Index node, const std::vector<Vec3>& from,
+template <SolidShape S>
+void add_node(const Moving<S>& m, Index node, const std::vector<Vec3>& from,
               const std::vector<Vec3>& to, double reach, std::vector<Contact>& out) {
   const Vec3 q0 = m.before.own(from[uz(node)]);
   const Vec3 q1 = m.after.own(to[uz(node)]);
-  const auto wall = wall_for(*m.obstacle, q0, q1, reach);
+  const auto wall = wall_for(*m.shape, q0, q1, reach);
   if (!wall) return;
   Contact c;
   c.node[0] = node;
@@ -152,23 +104,30 @@ unsigned beyond(const Eigen::AlignedBox3d& box, const Vec3& x0, const Vec3& x1) 
   return bits;
 }
 
-// Whether the triangle is so small at rest that its corners are enough to keep a ball, or the rod
-// of a capsule, of that radius [m] out: it enters between them by at most 9 % of an edge.
-bool is_small(const Model& model, const Triangle& t, double radius) {
+// Whether no edge of the triangle is longer at rest [m].
+bool is_small(const Model& model, const Triangle& t, double longest) {
   const auto& x = model.rest_position;
   const auto is_short = [&](std::size_t a, std::size_t b) {
-    return 4.0 * (x[uz(t[a])] - x[uz(t[b])]).squaredNorm() <= radius * radius;
+    return (x[uz(t[a])] - x[uz(t[b])]).squaredNorm() <= longest * longest;
   };
   return is_short(0, 1) && is_short(1, 2) && is_short(2, 0);
 }
 
-void add_triangles(const Model& model, const Moving& m, std::size_t body,
-                   const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
-                   std::vector<Contact>& out) {
-  const std::vector<Rod> rods =
-      rods_of(*m.obstacle, m.before, m.after, model.skin.longest_edge[body]);
+// Around the way of a rod, with the reach.
+Eigen::AlignedBox3d box_around(const MovingRod& rod, double reach) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3* end : {&rod.a0, &rod.b0, &rod.a1, &rod.b1}) box.extend(*end);
+  const Vec3 off = Vec3::Constant(rod.radius + reach);
+  return {box.min() - off, box.max() + off};
+}
+
+template <SolidShape S>
+void add_triangles(const Model& model, const Moving<S>& m, std::size_t body,
+                   const Eigen::AlignedBox3d& body_box, const std::vector<Vec3>& from,
+                   const std::vector<Vec3>& to, double reach, std::vector<Contact>& out) {
+  const std::vector<shapes::Rod> rods = m.shape->rods(model.skin.longest_edge[body]);
   if (rods.empty()) return;
-  const bool round = m.obstacle->shape != ObstacleShape::box;
+  const double smooth = m.shape->smooth_to();
   const Range nodes = model.bodies[body].nodes;
   std::vector<unsigned char> outside(uz(nodes.size()));
   const Range own = model.skin.body_nodes[body];
@@ -186,13 +145,15 @@ void add_triangles(const Model& model, const Moving& m, std::size_t body,
       free += model.inverse_mass[uz(node)];
     }
     if (shared != 0 || free == 0.0) continue;
-    if (round && is_small(model, model.skin.triangles[uz(t)], m.obstacle->radius)) continue;
+    if (smooth > 0.0 && is_small(model, model.skin.triangles[uz(t)], smooth)) continue;
     near.push_back(t);
   }
   if (near.empty()) return;
   for (std::size_t r = 0; r < rods.size(); ++r) {
+    const MovingRod rod = moving_rod(rods[r], m.before, m.after);
+    if (!box_around(rod, reach).intersects(body_box)) continue;
     const std::size_t first = out.size();
-    add_rod_contacts(rods[r], model.skin, near, from, to, reach, out);
+    add_rod_contacts(rod, model.skin, near, from, to, reach, out);
     for (std::size_t i = first; i < out.size(); ++i) {
       Contact& c = out[i];
       const Vec3 place = m.after.own(c.anchor);
@@ -226,15 +187,17 @@ std::vector<Eigen::AlignedBox3d> boxes_of_bodies(const Model& model, const std::
   return boxes;
 }
 
-// Whether some of the box may be within `reach` of the obstacle on the way.
-bool may_meet(const Moving& m, const Eigen::AlignedBox3d& body, double reach) {
-  if (m.obstacle->shape != ObstacleShape::plane) return body.intersects(m.box);
-  for (const Pose* pose : {&m.before, &m.after}) {
-    const Vec3 n = pose->turn.col(1);
-    const Vec3 half = 0.5 * body.diagonal();
-    if (n.dot(body.center() - pose->center) - n.cwiseAbs().dot(half) < reach) return true;
-  }
-  return false;
+// Whether some of the body's box may be within `reach` of the obstacle on the way. A plane has no
+// box: the ball around the body's box decides.
+template <SolidShape S>
+bool may_meet(const Moving<S>& m, const Eigen::AlignedBox3d& body, double reach) {
+  if (!body.intersects(m.box)) return false;
+  if (m.shape->farthest() < std::numeric_limits<double>::infinity()) return true;
+  const auto near = [&](const Pose& pose) {
+    const double distance = m.shape->surface(pose.own(body.center())).distance;
+    return distance - 0.5 * body.diagonal().norm() < reach;
+  };
+  return near(m.before) || near(m.after);
 }
 
 // Gives the edges numbers: those of both their triangles are the same.
@@ -265,11 +228,16 @@ void number_edges(Skin& skin) {
 
 void build_skin(Model& model) {
   Skin& skin = model.skin;
-  if (!skin.triangles.empty()) return;
+  if (!skin.nodes.empty()) return;
   skin.triangles = build_surface(model.tets, model.body_node_count()).triangles;
   std::vector<bool> on(uz(model.body_node_count()), false);
   for (const Triangle& t : skin.triangles)
     for (const Index node : t) on[uz(node)] = true;
+  // Single masses, which no tet has, are all surface.
+  std::vector<bool> in_tet(on.size(), false);
+  for (const Tet& tet : model.tets)
+    for (const Index node : tet) in_tet[uz(node)] = true;
+  for (std::size_t i = 0; i < on.size(); ++i) on[i] = on[i] || !in_tet[i];
   number_edges(skin);
   std::size_t t = 0;
   for (const Body& body : model.bodies) {
@@ -295,32 +263,34 @@ void build_skin(Model& model) {
 }
 
 void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
-                            const std::vector<Vec3>& to, double t0, double t1, double reach,
-                            std::vector<Contact>& out) {
+                            const std::vector<Vec3>& to, double t0, double t1,
+                            const ContactReach& reach, std::vector<Contact>& out) {
   out.clear();
-  std::vector<Moving> movers;
-  for (std::size_t o = 0; o < model.obstacles.size(); ++o) {
-    const Obstacle& obstacle = model.obstacles[o];
-    if (obstacle.hard() && obstacle.shape != ObstacleShape::mesh)
-      movers.push_back(moving(obstacle, static_cast<Index>(o), t0, t1, reach));
-  }
-  if (movers.empty()) return;
-  const std::vector<Eigen::AlignedBox3d> boxes = boxes_of_bodies(model, from, to);
-  for (const Moving& m : movers) {
+  std::vector<Eigen::AlignedBox3d> boxes;
+  const auto find_with = [&]<SolidShape S>(const Obstacle& obstacle, const S& shape, Index index) {
+    if (boxes.empty()) boxes = boxes_of_bodies(model, from, to);
+    const double within = std::is_same_v<S, shapes::Plane> ? reach.plane : reach.near;
+    const auto m = moving(obstacle, shape, index, t0, t1, within);
     for (std::size_t b = 0; b < boxes.size(); ++b) {
-      if (!may_meet(m, boxes[b], reach)) continue;
+      if (!may_meet(m, boxes[b], within)) continue;
       const Range own = model.skin.body_nodes[b];
       for (Index k = own.begin; k < own.end; ++k) {
         const Index node = model.skin.nodes[uz(k)];
         if (model.inverse_mass[uz(node)] == 0.0) continue;
-        if (m.obstacle->shape != ObstacleShape::plane &&
-            beyond(m.box, from[uz(node)], to[uz(node)]) != 0)
-          continue;
-        add_node(m, node, from, to, reach, out);
+        if (beyond(m.box, from[uz(node)], to[uz(node)]) != 0) continue;
+        add_node(m, node, from, to, within, out);
       }
-      if (m.obstacle->shape != ObstacleShape::plane)
-        add_triangles(model, m, b, from, to, reach, out);
+      add_triangles(model, m, b, boxes[b], from, to, within, out);
     }
+  };
+  for (std::size_t o = 0; o < model.obstacles.size(); ++o) {
+    const Obstacle& obstacle = model.obstacles[o];
+    if (!obstacle.hard()) continue;
+    std::visit(Overloaded{[](const shapes::Mesh&) {},  // a surface: find_surfaces() has it
+                          [&](const SolidShape auto& shape) {
+                            find_with(obstacle, shape, static_cast<Index>(o));
+                          }},
+               obstacle.shape);
   }
   if (!std::is_sorted(out.begin(), out.end(), comes_before)) {
     std::sort(out.begin(), out.end(), comes_before);
@@ -336,8 +306,9 @@ void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
       if (c.node[static_cast<std::size_t>(a)] >= bodies) rigid = a;
     if (rigid < 0) continue;
     const Index vertex = c.node[static_cast<std::size_t>(rigid)];
-    const auto found = std::find_if(model.obstacles.begin(), model.obstacles.end(),
-                                    [&](const Obstacle& o) { return o.nodes.contains(vertex); });
+    const auto found = std::find_if(
+        model.obstacles.begin(), model.obstacles.end(),
+        [&](const Obstacle& o) { return o.mesh() != nullptr && o.mesh()->nodes.contains(vertex); });
     if (found == model.obstacles.end()) continue;
     // r and the normal both change their sign where the obstacle is what touches: the gap does not.
     const double sign = c.node[0] >= bodies ? -1.0 : 1.0;
@@ -370,14 +341,16 @@ void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
 ColliderReading read_collider(const Model& model, const Obstacle& obstacle,
                               const std::vector<Vec3>& x, double time, double reach) {
   ColliderReading reading;
-  if (obstacle.shape == ObstacleShape::mesh) return reading;
   const Pose pose = obstacle_pose(obstacle, time);
-  for (const Index node : model.skin.nodes) {
-    if (model.inverse_mass[uz(node)] == 0.0) continue;
-    const double distance = surface_of(obstacle, pose.own(x[uz(node)])).distance;
-    if (distance < reach) ++reading.contacts;
-    reading.depth = std::max(reading.depth, -distance);
-  }
+  const auto read = [&](const SolidShape auto& shape) {
+    for (const Index node : model.skin.nodes) {
+      if (model.inverse_mass[uz(node)] == 0.0) continue;
+      const double distance = shape.surface(pose.own(x[uz(node)])).distance;
+      if (distance < reach) ++reading.contacts;
+      reading.depth = std::max(reading.depth, -distance);
+    }
+  };
+  std::visit(Overloaded{[](const shapes::Mesh&) {}, read}, obstacle.shape);
   return reading;
 }
 

@@ -1,4 +1,5 @@
-// Contacts of bodies with rigid planes, spheres, capsules and boxes. docs/methods/obstacles.md.
+// Contacts of bodies with the shapes of obstacles (model/shapes/), the ground among them.
+// docs/methods/obstacles.md.
 #pragma once
 
 #include <vector>
@@ -16,28 +17,27 @@ void build_skin(Model& model);
 // obstacles but meshes, into `out` (which is cleared), sorted by id:
 //
 //   node against a shape: every node of the surface whose gap at `to` is below `reach` [m], and
-//   those
-//     that went into or through the shape on the way, seen from the moving shape. Where the nearest
-//     way out is not to the side that the node came from, the normal is the one of where it came
-//     in.
-//   triangle against a sphere, a capsule, the edges or the corners of a box: those smaller than the
-//     triangles slip between their nodes. One to three nodes with barycentric weights. Spheres and
-//     capsules only where their radius is less than twice the body's longest edge.
+//     every node that went into or through the shape on the way, relative to the moving shape. If
+//     the shortest way out is not on the side that the node came from, the normal is that of the
+//     place where it entered.
+//   triangle against a rod of a shape (a small sphere or capsule, the edges and corners of a box or
+//     cylinder): what is smaller than the triangles slips between their nodes. One to three nodes
+//     with barycentric weights. The shape says which rods it has for a body's longest edge.
 //
 // Nodes whose motion is given do not touch; nor does a triangle with no free corner. The result
 // depends on the arguments only.
 void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
-                            const std::vector<Vec3>& to, double t0, double t1, double reach,
-                            std::vector<Contact>& out);
+                            const std::vector<Vec3>& to, double t0, double t1,
+                            const ContactReach& reach, std::vector<Contact>& out);
 
-// Contacts with rigid meshes as SurfaceContacts finds them, between nodes, into contacts with a
-// collider: what is touched is the obstacle, whose nodes go into `anchor` and `way`; friction and
-// restitution are its own. What touches no mesh stays as it is.
+// Turns contacts between nodes of bodies and of rigid meshes (SurfaceContacts) into contacts with
+// an obstacle: `anchor` and `way` replace the mesh's nodes; friction and restitution are those of
+// the obstacle. Other contacts stay as they are.
 void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
                          const std::vector<Vec3>& to, std::vector<Contact>& contacts);
 
-// How the bodies stand to an obstacle at positions x and a time: the deepest node [m] (0: none is
-// inside) and how many nodes are inside or within `reach` [m].
+// The depth of the deepest node inside an obstacle at positions x and a time [m] (0: none is
+// inside), and the number of nodes that are inside or within `reach` [m].
 struct ColliderReading {
   double depth = 0.0;
   Index contacts = 0;

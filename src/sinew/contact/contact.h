@@ -1,6 +1,6 @@
-// What touches: a condition on the distance between a node or edge and what it may not enter.
-// Found by contact/surfaces.h and contact/colliders.h; answered by contact/contact_solver.h in
-// explicit steps, by solver/constraints.h in implicit ones and rest states.
+// A contact: a condition on the distance between a node or edge and what it may not enter.
+// contact/surfaces.h and contact/colliders.h find contacts; contact/contact_solver.h solves them in
+// explicit steps, solver/constraints.h in implicit steps and rest states.
 // docs/methods/contact.md.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace sinew {
 
-// A condition on one to four nodes. The place that touches, seen from what it touches, is
+// A condition on one to four nodes. The place that touches, relative to what it touches, is
 //
 //   r(x) = sum_a weight_a x_a - anchor,      gap(x) = normal . r(x) >= 0
 //
@@ -37,7 +37,17 @@ struct Contact {
   ContactId id;                // which contact it is; unique within a step
 };
 
-// Where the contact's place is, seen from what it touches [m].
+// The gaps below which contacts are found [m]. A plane has its own: it is the same condition
+// wherever a node is, so a solver that moves nodes far can hold it from any distance.
+struct ContactReach {
+  ContactReach(double any) : near(any), plane(any) {}  // NOLINT: the usual case
+  ContactReach(double shapes_and_surfaces, double planes)
+      : near(shapes_and_surfaces), plane(planes) {}
+  double near = 0.0;
+  double plane = 0.0;
+};
+
+// The place that touches, relative to what it touches [m]: r(x) above.
 inline Vec3 contact_offset(const Contact& c, const std::vector<Vec3>& x) {
   Vec3 r = -c.anchor;
   for (int a = 0; a < c.count; ++a)

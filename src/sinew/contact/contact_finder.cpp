@@ -13,10 +13,10 @@ namespace {
 // Whether contacts can share nodes: not where one plane is all that can be touched.
 bool may_share_nodes(const Model& model) {
   if (!model.surface.triangles.empty()) return true;
-  Index planes = model.ground ? 1 : 0;
+  Index planes = 0;
   for (const Obstacle& o : model.obstacles) {
     if (!o.hard()) continue;
-    if (o.shape != ObstacleShape::plane) return true;
+    if (!std::holds_alternative<shapes::Plane>(o.shape)) return true;
     ++planes;
   }
   return planes > 1;
@@ -45,7 +45,7 @@ bool ContactFinder::anything_to_find(const Model& model) {
 }
 
 void ContactFinder::find_shapes(const std::vector<Vec3>& from, const std::vector<Vec3>& to,
-                                double t0, double t1, double reach,
+                                double t0, double t1, const ContactReach& reach,
                                 std::vector<Contact>& contacts) {
   find_collider_contacts(model_, from, to, t0, t1, reach, contacts);
 }
@@ -62,11 +62,11 @@ void ContactFinder::find_surfaces(const std::vector<Vec3>& from, const std::vect
 }
 
 void ContactFinder::find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0,
-                         double t1, double reach, std::vector<Contact>& contacts) {
+                         double t1, const ContactReach& reach, std::vector<Contact>& contacts) {
   contacts.clear();
   find_shapes(from, to, t0, t1, reach, contacts);
   if (!surfaces_) return;
-  find_surfaces(from, to, reach, part_);
+  find_surfaces(from, to, reach.near, part_);
   contacts.insert(contacts.end(), part_.begin(), part_.end());
 }
 

@@ -1,4 +1,4 @@
-// All contacts of a step: of bodies with each other and with themselves, and with hard obstacles.
+// Finds all contacts of a step: of bodies with each other, with themselves and with hard obstacles.
 // docs/methods/contact.md.
 #pragma once
 
@@ -17,26 +17,26 @@ class ContactFinder {
   explicit ContactFinder(const Model& model);
   ~ContactFinder();
 
-  // Whether the model has anything but the ground that can touch.
+  // Whether the model has anything that can touch.
   static bool anything_to_find(const Model& model);
 
-  // The gap below which contacts take part in an explicit step [m]: those that nearly touch count
-  // at once where others push them in. 0 where no contact can share a node with another.
+  // The gap below which contacts take part in an explicit step [m]. Contacts that nearly touch take
+  // part because others may close them. 0 where no two contacts can share a node.
   double explicit_reach() const { return explicit_reach_; }
 
-  // Contacts of a step from positions `from` at time t0 to `to` at time t1 (nodes): places whose
-  // gap at `to` is below `reach` [m], and those that met on the way. Sorted by id; they depend on
-  // nothing but the model and the arguments.
+  // The find functions give the contacts of a step from positions `from` at time t0 to `to` at time
+  // t1 (nodes): places whose gap at `to` is below `reach` [m], and places that met on the way. The
+  // contacts are sorted by id and depend on the model and the arguments only.
   //
-  // Those with obstacles that have a shape; appends them.
+  // Contacts with obstacles that have a shape; `contacts` is cleared.
   void find_shapes(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0, double t1,
-                   double reach, std::vector<Contact>& contacts);
-  // Those between surfaces, of bodies and rigid meshes; `contacts` is cleared.
+                   const ContactReach& reach, std::vector<Contact>& contacts);
+  // Contacts between surfaces of bodies and rigid meshes; `contacts` is cleared.
   void find_surfaces(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
                      std::vector<Contact>& contacts);
-  // All of them, `contacts` is cleared.
+  // All contacts; `contacts` is cleared.
   void find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0, double t1,
-            double reach, std::vector<Contact>& contacts);
+            const ContactReach& reach, std::vector<Contact>& contacts);
 
  private:
   const Model& model_;

@@ -1,4 +1,4 @@
-// The answer to contacts in an explicit step: impulses with restitution and Coulomb friction.
+// The contact solver of explicit steps: impulses with restitution and Coulomb friction.
 // docs/methods/contact.md.
 #pragma once
 
@@ -14,14 +14,14 @@ namespace sinew {
 
 struct ContactReport {
   Index contacts = 0;       // places that touched
-  int sweeps = 0;           // turns that all contacts took
+  int sweeps = 0;           // Gauss-Seidel sweeps over all contacts
   double dissipated = 0.0;  // [J] by impact and friction
   double friction = 0.0;    // [J] of that by friction
   double work_in = 0.0;     // [J] by colliders that move
   double deepest = 0.0;     // [m] the deepest place that is left inside
 };
 
-// Scratch of solve_contacts(): holds nothing that the next step could not compute again.
+// Scratch of solve_contacts(): the next step can compute all of it again.
 struct ContactScratch {
   // A contact and its impulses so far. "Along" is along the normal. Slots are into `velocity`;
   // those that are not used are 0, which is nobody's and has no weight.
@@ -38,7 +38,7 @@ struct ContactScratch {
     double friction = 0.0;              // [-]
     int count = 0;                      // of nodes
   };
-  // What is needed before and after the turns only.
+  // The part of a contact that the sweeps do not need.
   struct Arrival {
     const Contact* contact = nullptr;
     double velocity = 0.0;  // along, as predicted [m/s]
@@ -62,17 +62,17 @@ struct ContactScratch {
 // half-step velocities and, in last_step, the step before this one; `force` is the force of the
 // step [N] (nodes), `contacts` are those of the predicted positions, sorted by comes_before().
 //
-// Every contact gets the impulse with which its gap does not end below 0, or the one of its rebound
-// (contact/restitution.h), and at most mu times that along the plane, against the sliding.
-// Positions follow velocities, as those of constraints do in Verlet's method (SHAKE: Ryckaert,
-// Ciccotti and Berendsen 1977), so that what a contact does to the energy is what its impulse does.
-// Contacts that share nodes are taken in turn, in their order, with their impulses so far (Gauss
-// and Seidel), until what is left is small; those with a gap above 0 take part where the others
-// would close it. They begin with what they pushed with in the step before,
-// state.reactions.contacts, which this one leaves there for the next. The impulses of a contact
-// between bodies add up to zero: momentum is kept to rounding.
+// Each contact gets the impulse that ends the step with a gap of at least 0, or that of its rebound
+// (contact/restitution.h), and a friction impulse of at most mu times that, against the sliding.
+// Positions follow velocities, as constraints do in Verlet's method (SHAKE: Ryckaert, Ciccotti and
+// Berendsen 1977), so the energy of a contact is the work of its impulse.
 //
-// Adds what every collider is pushed with to state.obstacle_force.
+// Sweeps of projected Gauss-Seidel take the contacts in their order until the largest change is
+// small. A contact with a gap above 0 takes part because others may close it. The sweeps start from
+// the forces of the step before, state.reactions.contacts (warm start); the new forces replace
+// them. The impulses of a contact between bodies sum to zero: momentum is kept to rounding.
+//
+// Adds the forces of the bodies on every obstacle to state.obstacle_force.
 ContactReport solve_contacts(const Model& model, const std::vector<Contact>& contacts,
                              const std::vector<Vec3>& force, double h, State& state,
                              ContactScratch& scratch);

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <span>
 
-#include "sinew/contact/ground.h"
-
 namespace sinew {
 namespace {
 
@@ -41,7 +39,7 @@ bool rests(const State& state, const std::vector<Vec3>& before, double most) {
 ExplicitContacts::ExplicitContacts(const Model& model) : model_(model), finder_(model) {}
 
 bool ExplicitContacts::any(const Model& model) {
-  return model.ground.has_value() || ContactFinder::anything_to_find(model);
+  return ContactFinder::anything_to_find(model);
 }
 
 // Moves the nodes to where the warm start holds them. False: nothing is held, or it does not rest
@@ -74,9 +72,6 @@ void ExplicitContacts::find(const std::vector<Vec3>& before, const std::vector<V
   const double reach = finder_.explicit_reach();
   const auto find_shapes = [&] {
     finder_.find_shapes(before, state.position, state.time, state.time + h, reach, contacts_);
-    if (!model_.ground) return;
-    find_ground_contacts(model_, state.position, reach, contacts_);
-    std::sort(contacts_.begin(), contacts_.end(), comes_before);
   };
   const auto find_surfaces = [&] {
     finder_.find_surfaces(before, state.position, reach, surfaces_);

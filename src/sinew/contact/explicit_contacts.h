@@ -1,5 +1,5 @@
-// What an explicit step does about contacts: finds them (broad and narrow phase, CCD), holds what
-// rests (warm start), and answers them (contact solver). docs/methods/contact.md.
+// The contacts of an explicit step: the warm start holds resting nodes, the finder (broad phase,
+// narrow phase, CCD) finds contacts, the contact solver solves them. docs/methods/contact.md.
 #pragma once
 
 #include <vector>
@@ -12,30 +12,30 @@
 
 namespace sinew {
 
-// Scratch of a run: what step() gives depends on nothing but the Model and the arguments.
+// Scratch of a run: the result of step() depends on the Model and the arguments only.
 class ExplicitContacts {
  public:
   // Keeps a reference to the model.
   explicit ExplicitContacts(const Model& model);
 
-  // Whether anything of the model can touch: where nothing can, no step needs this.
+  // Whether anything of the model can touch. The steps of other models need no such object.
   static bool any(const Model& model);
 
   // Corrects a step of length h [s] from the positions `before` [m] (nodes). `state` holds the
   // predicted positions and half-step velocities and, in last_step and time, where the step begins;
   // `force` is the force of the step [N] (nodes).
   //
-  // Contacts are looked for where the pushes of the step before, state.reactions.contacts, lead the
-  // predicted positions: what rests stays where it is, and nothing of it has to be followed on its
-  // way. The gaps are those of the predicted positions. If something that pushed is not found
-  // there, contacts of its sort are looked for at the predicted positions themselves.
+  // The forces of the step before, state.reactions.contacts, move resting nodes back to their
+  // support; contacts are found at those positions, so CCD need not follow a resting node. The gaps
+  // are measured at the predicted positions. If a contact of the step before is missing, the
+  // contacts of its kind are found again at the predicted positions.
   //
-  // Adds work and losses to state.energy; leaves the pushes for the next step in state.reactions,
-  // and what bodies push hard obstacles with in state.obstacle_force.
+  // Adds work and losses to state.energy. Writes the contact forces to state.reactions, where the
+  // next step starts, and the forces of bodies on hard obstacles to state.obstacle_force.
   ContactReport step(const std::vector<Vec3>& before, const std::vector<Vec3>& force, double h,
                      State& state);
 
-  // The contacts that the last step() answered.
+  // The contacts that the last step() solved.
   const std::vector<Contact>& contacts() const { return contacts_; }
   ContactFinder& finder() { return finder_; }
 

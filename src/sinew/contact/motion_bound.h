@@ -1,5 +1,5 @@
-// How far nodes may have moved since some moment: tells for how long lists of what is near stay
-// good, without looking at them pair by pair.
+// A bound on how far nodes have moved since some moment. It tells how long neighbour lists stay
+// valid, without a look at their pairs.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Whether a node touches a surface, or an edge an edge: the narrow phase of contact. What decides
-// stands in docs/methods/contact.md.
+// The narrow phase of contact: whether a node touches a surface, or an edge an edge. The rules are
+// in docs/methods/contact.md.
 #pragma once
 
 #include <span>

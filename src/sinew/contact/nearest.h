@@ -1,4 +1,4 @@
-// Where two features of triangle meshes are nearest to each other: pure functions on points.
+// The nearest points of two features of triangle meshes: pure functions on points.
 // Ericson, Real-Time Collision Detection (2005), chapter 5.
 #pragma once
 

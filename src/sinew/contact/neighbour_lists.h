@@ -1,5 +1,5 @@
-// What is near what on the surfaces, in lists that stay good for many steps: the broad phase of
-// contact. A list may hold too much, never too little.
+// Neighbour lists (Verlet lists) of surfaces: the broad phase of contact. A list holds all pairs
+// within a range and a skin, so it is valid for many steps. It may hold more pairs, never fewer.
 #pragma once
 
 #include <memory>

@@ -1,4 +1,4 @@
-// Which bodies are inside each other: the referee of contact, and what a start is checked with.
+// Bodies that are inside each other: checks contact in tests and the start of a run.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
-// Flight of what touches along the normal within an explicit step, as a pure function on plain
-// values. docs/methods/ground.md.
+// The bounce of a contact within an explicit step: its flight along the normal, as a pure function
+// on plain values. docs/methods/ground.md.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +16,9 @@ struct Rebound {
 };
 
 // gap [m], velocity [m/s]: the prediction at the end of a step of length h; a: the acceleration
-// along the normal [m/s2], constant within the step: the flight is a parabola, and the moment at
-// which the gap closes is exact, so that a ball which bounces with restitution 1 keeps its height.
-// What would close the gap again within the step is at rest.
+// along the normal [m/s2]. It is constant within the step, so the flight is a parabola and the time
+// of impact is exact: a ball that bounces with restitution 1 keeps its height. A contact whose gap
+// would close again within the step is at rest.
 inline Rebound rebound(double gap, double velocity, double a, double h, double restitution) {
   const double start_gap = std::max(0.0, gap - h * velocity);
   const double v0 = velocity - 0.5 * h * a;  // at the start of the step

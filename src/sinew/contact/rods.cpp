@@ -12,7 +12,7 @@ namespace {
 // Triangle and rod at a share of the step.
 struct Sweep {
   Corners x0, x1;
-  const Rod& rod;
+  const MovingRod& rod;
 
   Corners corners(double s) const {
     Corners c;
@@ -91,7 +91,8 @@ std::optional<Hit> hit_of(const Sweep& sweep, double reach) {
   return Hit{met, n, -n.dot(out), true};
 }
 
-Contact contact_of(const Hit& hit, const Rod& rod, const Triangle& t, const std::vector<Vec3>& to) {
+Contact contact_of(const Hit& hit, const MovingRod& rod, const Triangle& t,
+                   const std::vector<Vec3>& to) {
   Contact c;
   for (int i = 0; i < 3; ++i) {
     if (hit.pair.weight[i] == 0.0) continue;
@@ -116,36 +117,12 @@ struct EdgeHit {
 
 }  // namespace
 
-std::vector<Rod> rods_of(const Obstacle& o, const Pose& before, const Pose& after,
-                         double longest_edge) {
-  std::vector<Rod> rods;
-  const auto add = [&](const Vec3& a, const Vec3& b, double radius) {
-    rods.push_back({before.at(a), before.at(b), after.at(a), after.at(b), radius, a == b});
-  };
-  if (o.shape == ObstacleShape::box) {
-    const double radius = 0.2 * o.half.minCoeff();
-    const Vec3 in = o.half - Vec3::Constant(radius);
-    const auto corner = [&](int bits) {
-      return Vec3((bits & 1) != 0 ? in.x() : -in.x(), (bits & 2) != 0 ? in.y() : -in.y(),
-                  (bits & 4) != 0 ? in.z() : -in.z());
-    };
-    for (int c = 0; c < 8; ++c) add(corner(c), corner(c), radius);
-    for (int c = 0; c < 8; ++c)
-      for (const int axis : {1, 2, 4})
-        if ((c & axis) == 0) add(corner(c), corner(c | axis), radius);
-    return rods;
-  }
-  if (o.shape == ObstacleShape::plane || o.radius >= 2.0 * longest_edge) return rods;
-  const Vec3 end(0.0, 0.0, o.half.z());
-  add(-end, -end, o.radius);
-  if (o.half.z() > 0.0) {
-    add(end, end, o.radius);
-    add(-end, end, o.radius);
-  }
-  return rods;
+MovingRod moving_rod(const shapes::Rod& rod, const Pose& before, const Pose& after) {
+  return {before.at(rod.a), before.at(rod.b), after.at(rod.a),
+          after.at(rod.b),  rod.radius,       rod.a == rod.b};
 }
 
-void add_rod_contacts(const Rod& rod, const Skin& skin, const std::vector<Index>& near,
+void add_rod_contacts(const MovingRod& rod, const Skin& skin, const std::vector<Index>& near,
                       const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
                       std::vector<Contact>& out) {
   Eigen::AlignedBox3d box;

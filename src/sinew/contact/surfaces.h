@@ -1,4 +1,4 @@
-// Finds what touches: surfaces of bodies and rigid meshes against each other, and of bodies against
+// Finds contacts between surfaces: of bodies and rigid meshes with each other, and of bodies with
 // themselves. docs/methods/contact.md.
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace sinew {
 
-// Scratch of a run: holds nothing that could not be computed again. What find() gives depends on
-// nothing but its arguments and the Model.
+// Scratch of a run: all of it can be computed again. The result of find() depends on its arguments
+// and the Model only.
 class SurfaceContacts {
  public:
   explicit SurfaceContacts(const Model& model);

@@ -1,5 +1,5 @@
-// When features that move on straight lines within a step meet: the roots of the cubic of
-// coplanarity (Provot 1997; Bridson, Fedkiw, Anderson 2002).
+// The time of impact of features that move on straight lines within a step: the roots of the cubic
+// of coplanarity (Provot 1997; Bridson, Fedkiw, Anderson 2002).
 #pragma once
 
 #include <algorithm>

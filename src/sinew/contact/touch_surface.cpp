@@ -127,7 +127,7 @@ void add_owner(const std::vector<Vec3>& x, std::span<const Triangle> triangles,
 void build_touch_surface(Model& model) {
   model.surface = {};
   const bool rigid = std::any_of(model.obstacles.begin(), model.obstacles.end(),
-                                 [](const Obstacle& o) { return o.shape == ObstacleShape::mesh; });
+                                 [](const Obstacle& o) { return o.mesh() != nullptr; });
   if (!model.touch && !rigid) return;
   model.surface.body_count = static_cast<Index>(model.bodies.size());
   const Surface all = build_surface(model.tets, model.node_count());
@@ -144,7 +144,7 @@ void build_touch_surface(Model& model) {
     add_owner(model.rest_position, triangles, heights, model.surface);
   }
   for (const Obstacle& o : model.obstacles) {
-    if (o.shape == ObstacleShape::mesh) add_rigid_touch_surface(model, o.triangles);
+    if (o.mesh() != nullptr) add_rigid_touch_surface(model, o.mesh()->triangles);
   }
 }
 

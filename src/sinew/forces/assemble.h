@@ -2,7 +2,7 @@
 //
 //   Model model;
 //   add_body(model, spec);          // once per body, before anything else
-//   model.pins.push_back(...);      // pins, loads, probes, ground, gravity: set directly
+//   model.pins.push_back(...);      // pins, loads, probes, gravity: set directly
 //   add_attachment(model, ...);     // springs between bodies, or to an anchor
 //   finish(model);                  // checks, and builds what is derived
 #pragma once

@@ -31,8 +31,8 @@ void add_obstacle(Model& model, Obstacle obstacle) {
 void add_mesh_obstacle(Model& model, Obstacle obstacle, std::span<const Vec3> vertices,
                        std::span<const Triangle> triangles) {
   const Index first = model.node_count();
-  obstacle.shape = ObstacleShape::mesh;
-  obstacle.nodes = {first, first + static_cast<Index>(vertices.size())};
+  shapes::Mesh mesh;
+  mesh.nodes = {first, first + static_cast<Index>(vertices.size())};
   Pin pin{obstacle.name, {}, obstacle.path};
   for (const Vec3& x : vertices) {
     pin.nodes.push_back(model.node_count());
@@ -42,7 +42,8 @@ void add_mesh_obstacle(Model& model, Obstacle obstacle, std::span<const Vec3> ve
     model.start_velocity.push_back(Vec3::Zero());
   }
   for (const Triangle& t : triangles)
-    obstacle.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+    mesh.triangles.push_back({t[0] + first, t[1] + first, t[2] + first});
+  obstacle.shape = std::move(mesh);
   model.pins.push_back(std::move(pin));
   add_obstacle(model, std::move(obstacle));
 }
@@ -61,8 +62,8 @@ double ObstacleTerm::energy(const Configuration& at) {
     double energy = 0.0;
     for (std::size_t c = 0; c < centers.size() && model.inverse_mass[n] > 0.0; ++c) {
       const Obstacle& o = model.obstacles[c];
-      energy +=
-          obstacle_energy(at.x[n] - centers[c], o.radius, o.stiffness * model.surface_share[n]);
+      energy += obstacle_energy(at.x[n] - centers[c], o.soft_radius(),
+                                o.stiffness * model.surface_share[n]);
     }
     return energy;
   });
@@ -74,8 +75,8 @@ void ObstacleTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
   for_each_surface_node(model, [&](std::size_t n) {
     for (std::size_t c = 0; c < centers.size(); ++c) {
       const Obstacle& o = model.obstacles[c];
-      forces[n] +=
-          obstacle_push(at.x[n] - centers[c], o.radius, o.stiffness * model.surface_share[n]);
+      forces[n] += obstacle_push(at.x[n] - centers[c], o.soft_radius(),
+                                 o.stiffness * model.surface_share[n]);
     }
   });
 }
@@ -91,9 +92,9 @@ std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const 
     for (std::size_t n = 0; n < model.surface_share.size(); ++n) {
       if (o.hard() || model.surface_share[n] == 0.0 || model.inverse_mass[n] == 0.0) continue;
       const Vec3 r = x[n] - reading.center;
-      const double depth = o.radius - r.norm();
+      const double depth = o.soft_radius() - r.norm();
       if (depth <= 0.0) continue;
-      reading.force -= obstacle_push(r, o.radius, o.stiffness * model.surface_share[n]);
+      reading.force -= obstacle_push(r, o.soft_radius(), o.stiffness * model.surface_share[n]);
       reading.depth = std::max(reading.depth, depth);
       ++reading.contacts;
     }

@@ -84,14 +84,15 @@ void ObstacleTerm::for_each_element(const Configuration& at, Tangent tangent, co
     for (Index node = 0; node < static_cast<Index>(at.model.surface_share.size()); ++node) {
       const double k = o.stiffness * at.model.surface_share[uz(node)];
       const Vec3 r = at.x[uz(node)] - centers[c];
-      if (k == 0.0 || at.model.inverse_mass[uz(node)] == 0.0 || r.norm() >= o.radius) continue;
+      if (k == 0.0 || at.model.inverse_mass[uz(node)] == 0.0 || r.norm() >= o.soft_radius())
+        continue;
       Mat3 block;
       for (int axis = 0; axis < 3; ++axis) {
-        block.col(axis) = obstacle_stiffness_times(r, o.radius, k, Vec3::Unit(axis),
+        block.col(axis) = obstacle_stiffness_times(r, o.soft_radius(), k, Vec3::Unit(axis),
                                                    tangent == Tangent::only_stiffening);
       }
       // Along r the stiffness is k, across it -k (R / |r| - 1).
-      const double norm = k * std::max(1.0, o.radius / r.norm() - 1.0);
+      const double norm = k * std::max(1.0, o.soft_radius() / r.norm() - 1.0);
       constexpr double one = 1.0;
       visit(Element{{&node, 1}, {&one, 1}, block, norm});
     }

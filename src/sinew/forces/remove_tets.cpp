@@ -110,7 +110,6 @@ void copy_attachments(const Model& from, Model& to, const TopologyChange& change
 
 void copy_surroundings(const Model& from, Model& to, const TopologyChange& change) {
   to.start_gravity = from.start_gravity;
-  to.ground = from.ground;
   to.touch = from.touch;
   to.limit_sweeps = from.limit_sweeps;
   to.limit_tolerance = from.limit_tolerance;
@@ -126,9 +125,11 @@ void copy_surroundings(const Model& from, Model& to, const TopologyChange& chang
   for (const Probe& probe : from.probes)
     to.probes.push_back({probe.name, still_there(probe.nodes, change)});
   for (Obstacle obstacle : from.obstacles) {
-    const Index first = obstacle.nodes.size() > 0 ? change.node[uz(obstacle.nodes.begin)] : 0;
-    obstacle.nodes = {first, first + obstacle.nodes.size()};
-    for (Triangle& t : obstacle.triangles) move(t, change);
+    if (auto* mesh = std::get_if<shapes::Mesh>(&obstacle.shape)) {
+      const Index first = change.node[uz(mesh->nodes.begin)];
+      mesh->nodes = {first, first + mesh->nodes.size()};
+      for (Triangle& t : mesh->triangles) move(t, change);
+    }
     add_obstacle(to, std::move(obstacle));
   }
 }

@@ -65,7 +65,8 @@ void Ball::follow(sim::World& world, double interval, double size) {
   const double most = fastest * size * interval;
   const Vec3 there = to_go.norm() <= most ? wished_ : Vec3(here + most / to_go.norm() * to_go);
   const double growth = wished_radius_ * interval / growing_time;
-  const double radius = std::clamp(wished_radius_, ball.radius - growth, ball.radius + growth);
+  const double radius =
+      std::clamp(wished_radius_, ball.soft_radius() - growth, ball.soft_radius() + growth);
   world.lead(*tool_, {there, Mat3::Identity()}, interval);
   world.reshape(*tool_, radius, stiffness_);
 }
@@ -73,7 +74,7 @@ void Ball::follow(sim::World& world, double interval, double size) {
 void Ball::hold(sim::World& world) {
   if (!tool_) return;
   stiffness_ = pressure(world);
-  world.reshape(*tool_, obstacle_of(world, *tool_).radius, stiffness_);
+  world.reshape(*tool_, obstacle_of(world, *tool_).soft_radius(), stiffness_);
 }
 
 Ball Ball::in(const sim::World& world) const {
@@ -87,7 +88,7 @@ std::optional<SphereStatus> Ball::status(const sim::World& world) const {
   const std::size_t i = world.index_of(*tool_);
   const ObstacleReading r =
       read_obstacles(world.model(), world.state().position, world.state().time)[i];
-  return SphereStatus{r.center, world.model().obstacles[i].radius, r.force, r.contacts,
+  return SphereStatus{r.center, world.model().obstacles[i].soft_radius(), r.force, r.contacts,
                       Mat3::Identity()};
 }
 

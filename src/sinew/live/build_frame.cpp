@@ -28,21 +28,17 @@ std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& 
 
 std::vector<std::uint8_t> find_contacts(const Model& model, const State& state,
                                         const Topology& topology, ContactFinder* finder) {
-  if (!model.ground && model.obstacles.empty() && finder == nullptr) return {};
+  if (model.obstacles.empty() && finder == nullptr) return {};
   const std::vector<Vec3> centers = obstacle_centers(model, state.time);
   std::vector<std::uint8_t> marks(topology.node.size(), 0);
   parallel_for(static_cast<Index>(marks.size()), [&](Index i) {
     const auto n = uz(topology.node[uz(i)]);
     const Vec3& x = state.position[n];
     bool touches = false;
-    if (model.ground) {
-      const double height = (x - model.ground->point).dot(model.ground->normal);
-      touches = height <= touch * static_cast<double>(topology.diagonal);
-    }
     const bool on_surface = n < model.surface_share.size() && model.surface_share[n] > 0.0;
     for (std::size_t c = 0; c < centers.size() && on_surface; ++c) {
       const Obstacle& o = model.obstacles[c];
-      touches = touches || (!o.hard() && (x - centers[c]).norm() < o.radius);
+      touches = touches || (!o.hard() && (x - centers[c]).norm() < o.soft_radius());
     }
     marks[uz(i)] = touches ? 1 : 0;
   });

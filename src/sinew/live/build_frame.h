@@ -15,10 +15,9 @@ namespace sinew::live {
 // x of these nodes as floats [m] (3 a node).
 std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& nodes);
 
-// 1 for every node shown that lies on the ground, is pushed by an obstacle, or touches another body
-// or its own; empty where none does. Of a contact those nodes that bear at least a third of it:
-// both sides have one. `finder`: of the model; null where only the ground and soft obstacles can
-// touch.
+// 1 for every node shown that touches an obstacle, the ground, another body or its own; empty where
+// none does. Of a contact those nodes that bear at least a third of it: both sides have one.
+// `finder`: of the model; null where only soft obstacles can touch.
 std::vector<std::uint8_t> find_contacts(const Model& model, const State& state,
                                         const Topology& topology, ContactFinder* finder);
 

@@ -99,9 +99,10 @@ struct Parameters {
     std::string name;
     double radius = 0.0;           // of a ball around it [m]; 0 of a plane
     std::string shape = "sphere";  // the word of scenes
-    Vec3 half = Vec3::Zero();      // box: half sides; capsule: radius, radius, half its length [m]
-    std::vector<Vec3> vertices;    // mesh: from its centre, in its own axes [m]
-    std::vector<Triangle> triangles;  // mesh: indices into vertices
+    // What it looks like, in its own axes; empty for a sphere and a plane, which the page draws.
+    std::vector<Vec3> vertices;       // [m]
+    std::vector<Vec3> normals;        // outwards (vertices); empty: those of the triangles
+    std::vector<Triangle> triangles;  // indices into vertices
   };
   std::vector<Rigid> obstacles;
   std::string compare;  // the law compared with, or empty

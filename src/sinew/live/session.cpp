@@ -8,6 +8,7 @@
 #include "sinew/base/error.h"
 #include "sinew/forces/springs.h"
 #include "sinew/live/build_frame.h"
+#include "sinew/live/outline.h"
 #include "sinew/sim/choose_stepper.h"
 #include "sinew/sim/obstacle_reading.h"
 #include "sinew/sim/readings.h"
@@ -15,21 +16,38 @@
 namespace sinew::live {
 namespace {
 
+// Of a sphere around the obstacle's centre that holds it [m]; 0 where there is none.
+double radius_around(const Obstacle& o) {
+  const double radius =
+      std::visit(Overloaded{[](const shapes::Mesh&) { return 0.0; },
+                            [](const SolidShape auto& s) { return s.farthest(); }},
+                 o.shape);
+  return std::isfinite(radius) ? radius : 0.0;
+}
+
 // What is shown of an obstacle.
-Parameters::Rigid rigid_of(const Model& model, const Obstacle& o, const std::string& shape) {
-  Parameters::Rigid out{o.name, o.radius, shape, o.half, {}, {}};
-  if (o.shape == ObstacleShape::capsule) {
-    out.half = Vec3(o.radius, o.radius, o.half.z());
-    out.radius += o.half.z();
-  }
-  if (o.shape == ObstacleShape::box) out.radius = o.half.norm();
-  const Pose rest{o.center, o.rotation};
-  for (Index i = o.nodes.begin; i < o.nodes.end; ++i) {
-    out.vertices.push_back(rest.own(model.rest_position[uz(i)]));
-    out.radius = std::max(out.radius, out.vertices.back().norm());
-  }
-  for (const Triangle& t : o.triangles)
-    out.triangles.push_back({t[0] - o.nodes.begin, t[1] - o.nodes.begin, t[2] - o.nodes.begin});
+Parameters::Rigid rigid_of(const Model& model, const Obstacle& o) {
+  Parameters::Rigid out{o.name, radius_around(o), std::string(word_of(o.shape)), {}, {}, {}};
+  const auto show_mesh = [&](const shapes::Mesh& mesh) {
+    const Pose rest{o.center, o.rotation};
+    for (Index i = mesh.nodes.begin; i < mesh.nodes.end; ++i) {
+      out.vertices.push_back(rest.own(model.rest_position[uz(i)]));
+      out.radius = std::max(out.radius, out.vertices.back().norm());
+    }
+    for (const Triangle& t : mesh.triangles)
+      out.triangles.push_back(
+          {t[0] - mesh.nodes.begin, t[1] - mesh.nodes.begin, t[2] - mesh.nodes.begin});
+  };
+  const auto show_solid = [&](const SolidShape auto& solid) {
+    Outline outline = outline_of(solid);
+    out.vertices = std::move(outline.vertices);
+    out.normals = std::move(outline.normals);
+    out.triangles = std::move(outline.triangles);
+  };
+  // The page draws a sphere by its radius, which may change, and a plane by its normal.
+  std::visit(
+      Overloaded{show_mesh, show_solid, [](const shapes::Sphere&) {}, [](const shapes::Plane&) {}},
+      o.shape);
   return out;
 }
 
@@ -115,7 +133,7 @@ void Session::remember_parameters() {
   p->opened = opened_;
   for (const Probe& probe : model().probes) p->probes.push_back(probe.name);
   for (std::size_t o = 0; o < scene.obstacles.size(); ++o)
-    p->obstacles.push_back(rigid_of(model(), model().obstacles[o], scene.obstacles[o].shape));
+    p->obstacles.push_back(rigid_of(model(), model().obstacles[o]));
   p->compare = compare_;
   p->cut = cut_;
   p->springs_shown = springs_;
@@ -247,7 +265,7 @@ Status Session::status() {
     if (s.obstacles.size() == world().scene().obstacles.size()) break;  // the ball comes last
     const Obstacle& obstacle = model().obstacles[s.obstacles.size()];
     const Mat3 turn = obstacle_pose(obstacle, run.state.time).turn;
-    s.obstacles.push_back({o.center, obstacle.radius, o.force, o.contacts, turn});
+    s.obstacles.push_back({o.center, radius_around(obstacle), o.force, o.contacts, turn});
   }
   s.ball = ball_.status(world());
   if (other_) s.distance = distance_between(pair_.mine, pair_.others, model().body_node_count());

@@ -1,5 +1,5 @@
-// Which contact it is: what touches what. The same from step to step, so that a contact can begin
-// with what it pushed with in the step before (warm start).
+// The identity of a contact: what touches what. It stays the same from step to step, so a contact
+// can start from its force of the step before (warm start).
 #pragma once
 
 #include <compare>

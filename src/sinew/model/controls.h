@@ -1,5 +1,5 @@
-// What a hand, a tool or a slider changes during a run. It stands beside State: a step reads it and
-// never writes it, and between steps its owner may change any of it.
+// The values that a hand, a tool or a slider changes during a run. A step reads them and never
+// writes them; between steps their owner may change any of them.
 #pragma once
 
 #include <vector>

@@ -29,7 +29,7 @@ void hash_path(Hash& h, const Path& path) {
 }  // namespace
 
 bool Model::bounces() const {
-  return (ground && ground->restitution > 0.0) || (touch && touch->restitution > 0.0) ||
+  return (touch && touch->restitution > 0.0) ||
          std::any_of(obstacles.begin(), obstacles.end(),
                      [](const Obstacle& o) { return o.hard() && o.restitution > 0.0; });
 }
@@ -68,13 +68,6 @@ std::uint64_t Model::hash() const {
   h.value(limit_sweeps);
   h.value(limit_tolerance);
   hash_vec(h, start_gravity);
-  h.value(ground.has_value());
-  if (ground) {
-    hash_vec(h, ground->point);
-    hash_vec(h, ground->normal);
-    h.value(ground->restitution);
-    h.value(ground->friction);
-  }
   h.value(touch.has_value());
   if (touch) {
     h.value(touch->bodies);
@@ -109,16 +102,18 @@ std::uint64_t Model::hash() const {
   for (const Obstacle& o : obstacles) {
     h.text(o.name);
     hash_vec(h, o.center);
-    h.value(o.radius);
     h.value(o.stiffness);
     hash_path(h, o.path);
-    h.value(static_cast<int>(o.shape));
+    h.text(std::string(word_of(o.shape)));
+    std::visit(Overloaded{[&](const shapes::Mesh& mesh) {
+                            h.value(mesh.nodes.begin);
+                            h.array(mesh.triangles);
+                          },
+                          [&](const SolidShape auto& solid) { hash_vec(h, solid.sizes()); }},
+               o.shape);
     for (const double r : o.rotation.reshaped()) h.value(r);
-    hash_vec(h, o.half);
     h.value(o.friction);
     h.value(o.restitution);
-    h.value(o.nodes.begin);
-    h.array(o.triangles);
   }
   for (const Tie& tie : ties) {
     for (const Index node : tie.node) h.value(node);
@@ -135,8 +130,8 @@ std::string Model::node_name(Index node) const {
     }
   }
   for (const Obstacle& o : obstacles) {
-    if (o.nodes.contains(node))
-      return fmt::format("obstacle {}, vertex {}", o.name, node - o.nodes.begin);
+    if (o.mesh() != nullptr && o.mesh()->nodes.contains(node))
+      return fmt::format("obstacle {}, vertex {}", o.name, node - o.mesh()->nodes.begin);
   }
   return fmt::format("anchor {}", node - body_node_count());
 }

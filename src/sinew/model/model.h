@@ -49,14 +49,6 @@ struct Load {
   double pressure = 0.0;               // [Pa] along the inward normal of the face as it is
 };
 
-// The half-space that bodies rest on.
-struct Ground {
-  Vec3 point = Vec3::Zero();    // [m]
-  Vec3 normal = Vec3::UnitY();  // [-] unit, points to the free side
-  double restitution = 0.0;     // [-] in [0, 1]
-  double friction = 0.5;        // [-] Coulomb's mu >= 0
-};
-
 // Bodies that may not enter each other, or themselves (contact/). docs/methods/contact.md.
 struct Touch {
   bool bodies = true;        // bodies against bodies
@@ -162,14 +154,13 @@ struct Model {
   double limit_tolerance = 1e-3;    // violation, as a share of l0, that is good enough
 
   Vec3 start_gravity = Vec3(0.0, -9.81, 0.0);  // [m/s2], what Controls start with
-  std::optional<Ground> ground;
   std::optional<Touch> touch;
   std::vector<Body> bodies;
   std::vector<Pin> pins;
   std::vector<Load> loads;
   std::vector<Tie> ties;
   std::vector<Probe> probes;
-  std::vector<Obstacle> obstacles;
+  std::vector<Obstacle> obstacles;    // those of the scene in its order, then its ground
   std::vector<double> surface_share;  // a third of the rest area of its surface triangles [m2]
                                       // (nodes of bodies); empty where there are no soft obstacles
   Skin skin;                          // empty where there are no hard obstacles

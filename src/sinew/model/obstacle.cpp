@@ -1,10 +1,24 @@
 #include "sinew/model/obstacle.h"
 
+#include <Eigen/Geometry>
+
 namespace sinew {
 
 Pose obstacle_pose(const Obstacle& obstacle, double time) {
   return {obstacle.path.at(time, obstacle.center),
           obstacle.path.rotation(time) * obstacle.rotation};
+}
+
+Obstacle make_ground(const Vec3& point, const Vec3& normal, double restitution, double friction) {
+  Obstacle o;
+  o.name = "the ground";
+  o.center = point;
+  o.shape = shapes::Plane{};
+  o.rotation = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), normal).toRotationMatrix();
+  o.friction = friction;
+  o.restitution = restitution;
+  o.listed = false;
+  return o;
 }
 
 }  // namespace sinew

@@ -2,39 +2,37 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "sinew/base/vec.h"
 #include "sinew/model/path.h"
+#include "sinew/model/shapes/shape.h"
 
 namespace sinew {
 
-enum class ObstacleShape {
-  sphere,   // of `radius` about the centre
-  plane,    // the half-space below the centre, its own y axis pointing out
-  capsule,  // what is within `radius` of the segment of half length `half.z()` along its own z axis
-  box,      // of half sides `half` along its own axes
-  mesh,     // triangles between nodes of the Model that a pin moves
-};
-
-// Without a stiffness it is hard: contact with friction (contact/colliders.h, and
+// Without a stiffness an obstacle is hard: contact with friction (contact/colliders.h, and
 // contact/surfaces.h for meshes). With one it is a frictionless sphere that presses
 // (forces/obstacles.h).
 struct Obstacle {
   std::string name;
   Vec3 center = Vec3::Zero();  // [m], before its path moves it
-  double radius = 0.0;         // [m] > 0; sphere, capsule
   double stiffness = 0.0;      // [N/m3] pressure per depth; 0: hard
   Path path = {};              // moves and turns it; never deforms it
-  ObstacleShape shape = ObstacleShape::sphere;
+  Shape shape = shapes::Sphere{};
   Mat3 rotation = Mat3::Identity();  // its own axes in the world, as columns, before the path
-  Vec3 half = Vec3::Zero();          // [m] > 0; box: half sides; capsule: z, half of the segment
   double friction = 0.5;             // [-] Coulomb's mu >= 0; hard
   double restitution = 0.0;          // [-] in [0, 1], of explicit steps; hard
-  Range nodes = {};                  // mesh: node ids of the Model
-  std::vector<Triangle> triangles = {};  // mesh: node ids, counter-clockwise seen from outside
+  bool listed = true;  // has a place in tables, readings and the host's handles; false: the ground
 
   bool hard() const { return stiffness == 0.0; }
+  // The radius of a sphere, the only shape that can be soft [m]; 0 for other shapes.
+  double soft_radius() const {
+    const auto* sphere = std::get_if<shapes::Sphere>(&shape);
+    return sphere != nullptr ? sphere->radius : 0.0;
+  }
+  // Null for an obstacle that is no mesh.
+  const shapes::Mesh* mesh() const { return std::get_if<shapes::Mesh>(&shape); }
+  // The nodes of a mesh; empty for other shapes.
+  Range nodes() const { return mesh() != nullptr ? mesh()->nodes : Range{0, 0}; }
 };
 
 // Where a rigid thing is: the point q of its own frame is at center + turn q.
@@ -48,5 +46,9 @@ struct Pose {
 
 // The obstacle's pose at a time [s].
 Pose obstacle_pose(const Obstacle& obstacle, double time);
+
+// The hard half-space below `point` [m] with a unit normal that points to the free side: the
+// `[ground]` of a scene. Its name has a space, so no obstacle of a scene can have the same.
+Obstacle make_ground(const Vec3& point, const Vec3& normal, double restitution, double friction);
 
 }  // namespace sinew

@@ -1,4 +1,4 @@
-// A motion given by key frames: what a moving pin follows.
+// A motion given by key frames, which a moving pin or obstacle follows.
 #pragma once
 
 #include <vector>

@@ -33,11 +33,10 @@ static_assert(sizeof(ContactPush) == sizeof(ContactId) + 4 * sizeof(Index) + 7 *
                   sizeof(ContactId) == 4 * sizeof(Index),
               "no gaps: checkpoints hold its bytes");
 
-// What contacts, the ground and the limits push with at the end of the last step, where the next
-// one starts from; empty before the first. Verlet's steps know only contacts, the ground among them
+// What contacts, the ground's among them, and limits push with at the end of the last step, where
+// the next one starts; empty before the first. Verlet's steps know contacts only
 // (solver/constraints.h, contact/contact_solver.h).
 struct Reactions {
-  std::vector<Vec3> ground;      // of the ground on each node [N] (nodes of bodies)
   std::vector<double> tension;   // of each limited spring [N] (as Model::limited), < 0: it pushes
   std::vector<double> pressure;  // on the volume of each limited cell [Pa] (cells), > 0: inwards
   std::vector<ContactPush> contacts;  // those that push, by id

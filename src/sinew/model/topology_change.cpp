@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "sinew/base/error.h"
 
 namespace sinew {
@@ -23,15 +25,21 @@ State transfer_state(const TopologyChange& change, const Model& before, const Mo
   out.step = state.step;
   out.energy = state.energy;
   out.obstacle_force = state.obstacle_force;
-  if (!state.reactions.ground.empty())
-    out.reactions.ground.assign(uz(after.body_node_count()), Vec3::Zero());
   for (std::size_t i = 0; i < change.node.size(); ++i) {
     if (change.node[i] < 0) continue;
     const auto n = uz(change.node[i]);
     out.position[n] = state.position[i];
     out.half_velocity[n] = state.half_velocity[i];
-    if (i < state.reactions.ground.size()) out.reactions.ground[n] = state.reactions.ground[i];
   }
+  for (ContactPush push : state.reactions.contacts) {
+    if (push.id.kind != ContactKind::node_shape) continue;
+    const Index node = change.node[uz(push.id.feature)];
+    if (node < 0) continue;
+    push.id.feature = push.node[0] = node;
+    out.reactions.contacts.push_back(push);
+  }
+  std::sort(out.reactions.contacts.begin(), out.reactions.contacts.end(),
+            [](const ContactPush& a, const ContactPush& b) { return a.id < b.id; });
   return out;
 }
 

@@ -17,9 +17,10 @@ struct TopologyChange {
   std::vector<Index> tet;   // id in the Model after, -1: gone (tets before)
 };
 
-// State transfer: every node of `after` that was there keeps its place, its velocity and the push
-// of the ground; the others are where they start. Time, steps and the energy account go on.
-// Contacts and the tensions of limits begin anew: they are found again in the next step.
+// State transfer: every node of `after` that was there keeps its place, its velocity and its pushes
+// from shapes of obstacles, the ground among them; the others are where they start. Time, steps and
+// the energy account go on. Other contacts and the tensions of limits begin anew: the next step
+// finds them again. The obstacles of both models are the same, in the same order.
 // Throws Error(usage) where the versions or the sizes do not fit.
 State transfer_state(const TopologyChange& change, const Model& before, const Model& after,
                      const State& state);

@@ -1,5 +1,5 @@
-// The surfaces that may touch: those of the bodies and of rigid meshes, in one list. Built once by
-// contact/touch_surface.h; what is found on it: contact/surfaces.h.
+// The surfaces that may touch: those of the bodies and of rigid meshes, in one list.
+// contact/touch_surface.h builds it once; contact/surfaces.h finds contacts on it.
 #pragma once
 
 #include <array>

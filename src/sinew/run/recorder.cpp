@@ -35,6 +35,7 @@ std::string probe_header(const Model& model) {
     for (const char* c : {"ux", "uy", "uz"}) header += fmt::format(",{}.{} [m]", p.name, c);
   }
   for (const Obstacle& o : model.obstacles) {
+    if (!o.listed) continue;
     for (const char* c : {"x", "y", "z"}) header += fmt::format(",{}.{} [m]", o.name, c);
     for (const char* c : {"fx", "fy", "fz"}) header += fmt::format(",{}.{} [N]", o.name, c);
     header += fmt::format(",{0}.travel [m],{0}.against [N]", o.name);

@@ -169,19 +169,12 @@ Obstacle obstacle_of(const SceneObstacle& o) {
   Obstacle out;
   out.name = o.name;
   out.center = o.center;
-  out.radius = o.radius;
   out.path = o.path;
   if (!o.pivot_given) out.path.pivot = o.center;
   out.rotation = o.rotation.toRotationMatrix();
   out.friction = o.friction;
   out.restitution = o.restitution;
-  out.shape = o.shape == "plane"     ? ObstacleShape::plane
-              : o.shape == "capsule" ? ObstacleShape::capsule
-              : o.shape == "box"     ? ObstacleShape::box
-              : o.shape == "mesh"    ? ObstacleShape::mesh
-                                     : ObstacleShape::sphere;
-  if (o.shape == "box") out.half = 0.5 * o.size;
-  if (o.shape == "capsule") out.half.z() = 0.5 * o.length;
+  out.shape = o.shape;
   return out;
 }
 
@@ -198,6 +191,11 @@ class Parts {
           {p.name, select(p.body, p.select, "'select' of [probe." + p.name + "]")});
     connect(scene_, bodies_, model_);
     for (const SceneObstacle& o : scene_.obstacles) add_obstacle_of(o);
+    // The ground comes last: obstacles of the scene keep their numbers.
+    if (const auto& g = scene_.ground) {
+      add_obstacle(model_, make_ground(g->point, g->normal, g->restitution, g->friction));
+      build_skin(model_);
+    }
   }
 
  private:
@@ -261,12 +259,13 @@ class Parts {
 
   void add_obstacle_of(const SceneObstacle& o) {
     Obstacle obstacle = obstacle_of(o);
-    if (obstacle.shape == ObstacleShape::mesh) {
+    if (obstacle.mesh() != nullptr) {
       const RigidMesh mesh = read_rigid_mesh(scene_, o);
       return add_mesh_obstacle(model_, std::move(obstacle), mesh.vertices, mesh.triangles);
     }
     if (o.soft)
-      obstacle.stiffness = o.stiffness.value_or(default_obstacle_stiffness(bodies_, o.radius));
+      obstacle.stiffness =
+          o.stiffness.value_or(default_obstacle_stiffness(bodies_, obstacle.soft_radius()));
     add_obstacle(model_, std::move(obstacle));
     if (!o.soft) return build_skin(model_);
     for (Index i = 0; i < model_.body_node_count(); ++i)
@@ -330,8 +329,6 @@ Model build_model(const Scene& scene, BuildReport* report) {
   model.start_gravity = scene.gravity;
   model.limit_sweeps = scene.limit_sweeps;
   model.limit_tolerance = scene.limit_tolerance;
-  if (const auto& g = scene.ground)
-    model.ground = Ground{g->point, g->normal, g->restitution, g->friction};
   if (const auto& c = scene.contact)
     model.touch = Touch{c->bodies, c->self, c->friction, c->restitution};
   build_touch_surface(model);

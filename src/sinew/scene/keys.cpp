@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "sinew/base/text.h"
 #include "sinew/model/material_words.h"
+#include "sinew/model/shapes/shape.h"
 #include "sinew/scene/scene.h"
 
 namespace sinew {
@@ -48,6 +50,19 @@ Key point(std::string_view name, std::string_view unit, std::string_view default
 Key other(std::string_view name, KeyType type, std::string_view unit = "",
           std::string_view default_value = "", Interval range = any) {
   return {name, type, unit, default_value, range, ""};
+}
+
+// "sphere plane ..."
+std::string_view words_of_shapes() {
+  static const std::string words = [] {
+    std::string all;
+    for_each_shape([&](const auto& shape) {
+      if (!all.empty()) all += ' ';
+      all += shape.word;
+    });
+    return all;
+  }();
+  return words;
 }
 
 KeyTables make_tables() {
@@ -212,7 +227,7 @@ KeyTables make_tables() {
   t.obstacle = {"obstacle",
                 "[obstacle.NAME]",
                 {
-                    word("shape", "\"sphere\"", "sphere plane capsule box mesh"),
+                    word("shape", "\"sphere\"", words_of_shapes()),
                     point("center", "m"),
                     number("radius", "m", "", positive),
                     number("length", "m", "", positive),

@@ -1,60 +1,74 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <string>
+#include <vector>
 
 #include "sinew/base/rotation.h"
+#include "sinew/model/shapes/shape.h"
 #include "sinew/scene/parse.h"
 
 namespace sinew {
 namespace {
 
-// Which shapes a key belongs to, and whether they cannot do without it.
-struct ObstacleKey {
-  std::string_view key;
-  std::string_view shapes;
-  std::string_view needed_by;
-};
-constexpr std::array<ObstacleKey, 12> obstacle_keys = {{
-    {"center", "sphere plane capsule box mesh", "sphere plane capsule box"},
-    {"radius", "sphere capsule", "sphere capsule"},
-    {"length", "capsule", "capsule"},
-    {"axis", "capsule", ""},
-    {"size", "box", "box"},
-    {"normal", "plane", ""},
-    {"mesh", "mesh", "mesh"},
-    {"scale", "mesh", ""},
-    {"flip", "mesh", ""},
-    {"rotation", "plane capsule box mesh", ""},
-    {"stiffness", "sphere", ""},
-    {"path", "sphere plane capsule box mesh", ""},
-}};
-
-bool has_word(std::string_view words, const std::string& word) {
+bool has_word(std::string_view words, std::string_view word) {
   const std::vector<std::string> all = split_words(words);
   return std::find(all.begin(), all.end(), word) != all.end();
 }
 
+// The shapes that have a key, and whether `shape` has it or cannot do without it.
+struct KeyUse {
+  std::vector<std::string_view> shapes;
+  bool has = false;
+  bool needs = false;
+};
+
+KeyUse use_of(std::string_view key, std::string_view shape) {
+  KeyUse use;
+  for_each_shape([&](const auto& s) {
+    const bool needs = has_word(s.needs, key);
+    if (!needs && !has_word(s.takes, key)) return;
+    use.shapes.push_back(s.word);
+    if (s.word != shape) return;
+    use.has = true;
+    use.needs = needs;
+  });
+  return use;
+}
+
+// The shape of a word of the list, with the sizes that the scene gives.
+Shape parse_shape(const Reader& reader, std::string_view word) {
+  shapes::Keys keys;
+  reader.number("radius", keys.radius);
+  reader.number("length", keys.length);
+  reader.point("size", keys.size);
+  Shape out;
+  for_each_shape([&](const auto& s) {
+    if (s.word == word) out = s.from(keys);
+  });
+  return out;
+}
+
 // A key that would have no effect is a mistake, and so is one that is missing.
-void check_keys(const Reader& reader, const std::string& shape) {
-  for (const ObstacleKey& k : obstacle_keys) {
-    if (has_word(k.needed_by, shape) && !reader.has(k.key))
+void check_keys(const Reader& reader, std::string_view shape) {
+  std::vector<std::string_view> keys;
+  for (const Key& key : key_tables().obstacle.keys) keys.push_back(key.name);
+  keys.push_back("path");
+  for (const std::string_view key : keys) {
+    const KeyUse use = use_of(key, shape);
+    if (use.needs && !reader.has(key))
       throw Error(
           ErrorKind::input,
-          fmt::format("{} has no '{}', which shape = \"{}\" needs", reader.name(), k.key, shape),
-          fmt::format("add {} (docs/scene-format.md)", k.key), reader.where());
-    if (!reader.has(k.key) || has_word(k.shapes, shape)) continue;
-    std::string list;
-    for (const std::string& owner : split_words(k.shapes))
-      list += (list.empty() ? "" : ", ") + owner;
-    if (k.key == "stiffness")
-      reader.fail(k.key,
-                  fmt::format("{} does not go with shape = \"{}\"", reader.called(k.key), shape),
+          fmt::format("{} has no '{}', which shape = \"{}\" needs", reader.name(), key, shape),
+          fmt::format("add {} (docs/scene-format.md)", key), reader.where());
+    if (!reader.has(key) || use.has || use.shapes.empty()) continue;  // no shape's: all have it
+    const std::string message =
+        fmt::format("{} does not go with shape = \"{}\"", reader.called(key), shape);
+    if (key == "stiffness")
+      reader.fail(key, message,
                   "remove it: without a stiffness the obstacle is hard; only a sphere can be soft");
-    reader.fail(k.key,
-                fmt::format("{} does not go with shape = \"{}\"", reader.called(k.key), shape),
-                fmt::format("remove it; it belongs to: {}", list));
+    reader.fail(key, message,
+                fmt::format("remove it; it belongs to: {}", fmt::join(use.shapes, ", ")));
   }
 }
 
@@ -91,25 +105,19 @@ SceneObstacle parse_obstacle(const std::string& name, const DocValue& value) {
   SceneObstacle obstacle;
   obstacle.name = name;
   obstacle.where = reader.where();
-  if (const auto shape = reader.word("shape"))
-    obstacle.shape = *shape;
-  else if (reader.has("mesh"))
-    obstacle.shape = "mesh";
-  check_keys(reader, obstacle.shape);
+  const std::string shape = reader.word("shape").value_or(
+      std::string(reader.has("mesh") ? shapes::Mesh::word : shapes::Sphere::word));
+  check_keys(reader, shape);
+  obstacle.shape = parse_shape(reader, shape);
   reader.point("center", obstacle.center);
-  reader.number("radius", obstacle.radius);
-  reader.number("length", obstacle.length);
-  reader.point("size", obstacle.size);
   if (reader.text("mesh", obstacle.mesh) && obstacle.mesh.empty())
     reader.fail("mesh", fmt::format("{} is empty; expected a file name", reader.called("mesh")),
                 "name a surface .off .obj .stl .ply, relative to the scene's folder");
   obstacle.mesh_where = reader.where("mesh");
   reader.number("scale", obstacle.scale);
   reader.boolean("flip", obstacle.flip);
-  if (obstacle.shape == "plane")
-    obstacle.rotation = parse_turn(reader, "normal", Vec3::UnitY());
-  else
-    obstacle.rotation = parse_turn(reader, "axis", Vec3::UnitZ());
+  obstacle.rotation = reader.has("normal") ? parse_turn(reader, "normal", Vec3::UnitY())
+                                           : parse_turn(reader, "axis", Vec3::UnitZ());
   reader.number("friction", obstacle.friction);
   reader.number("restitution", obstacle.restitution);
   obstacle.soft = reader.has("stiffness");

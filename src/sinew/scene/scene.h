@@ -17,6 +17,7 @@
 #include "sinew/io/vtu.h"
 #include "sinew/model/material.h"
 #include "sinew/model/path.h"
+#include "sinew/model/shapes/shape.h"
 #include "sinew/solver/stepper_kind.h"
 
 namespace sinew {
@@ -183,14 +184,11 @@ struct SceneProbe {
 
 struct SceneObstacle {
   std::string name;
-  std::string shape = "sphere";  // sphere, plane, capsule, box, mesh
-  Vec3 center = Vec3::Zero();    // [m]
-  double radius = 0.0;           // sphere, capsule [m]
-  double length = 0.0;           // capsule, without its round ends [m]
-  Vec3 size = Vec3::Zero();      // box [m]
-  std::string mesh;              // mesh: path, relative to the scene file
-  double scale = 1.0;            // mesh: metres per unit of the file
-  bool flip = false;             // mesh: turn the triangles' outside in
+  Shape shape = shapes::Sphere{};  // with its sizes; a mesh is read when the Model is built
+  Vec3 center = Vec3::Zero();      // [m]
+  std::string mesh;                // mesh: path, relative to the scene file
+  double scale = 1.0;              // mesh: metres per unit of the file
+  bool flip = false;               // mesh: turn the triangles' outside in
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();  // or from normal, axis
   bool soft = false;                // has a stiffness: presses instead of being hard
   std::optional<double> stiffness;  // soft [N/m3]; absent: from the bodies

@@ -202,17 +202,19 @@ Json rigid_status(const live::SphereStatus& s) {
 constexpr std::size_t most_triangles = 50'000;
 
 Json rigid(const live::Parameters::Rigid& r) {
-  Json out = {{"name", r.name}, {"radius", r.radius}, {"shape", r.shape}, {"half", vector(r.half)}};
-  if (r.shape != "mesh") return out;
-  Json vertices = Json::array();
+  Json out = {{"name", r.name}, {"radius", r.radius}, {"shape", r.shape}};
+  const bool shown = r.triangles.size() <= most_triangles;
+  const auto coordinates = [&](const std::vector<Vec3>& points) {
+    Json all = Json::array();
+    for (std::size_t i = 0; i < points.size() && shown; ++i)
+      for (const double c : points[i]) all.push_back(static_cast<float>(c));
+    return all;
+  };
   Json triangles = Json::array();
-  if (r.triangles.size() <= most_triangles) {
-    for (const Vec3& x : r.vertices)
-      for (const double c : x) vertices.push_back(static_cast<float>(c));
-    for (const Triangle& t : r.triangles)
-      for (const Index corner : t) triangles.push_back(corner);
-  }
-  out["vertices"] = std::move(vertices);
+  for (std::size_t t = 0; t < r.triangles.size() && shown; ++t)
+    for (const Index corner : r.triangles[t]) triangles.push_back(corner);
+  out["vertices"] = coordinates(r.vertices);
+  out["normals"] = coordinates(r.normals);
   out["triangles"] = std::move(triangles);
   return out;
 }

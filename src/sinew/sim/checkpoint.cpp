@@ -12,7 +12,7 @@
 namespace sinew {
 namespace {
 
-constexpr std::string_view magic = "SINEWCP7";
+constexpr std::string_view magic = "SINEWCP8";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>
@@ -25,7 +25,6 @@ void visit(Archive& a, Run& r) {
   a.value(r.state.step);
   a.value(r.state.energy.dissipated);
   a.value(r.state.energy.work_in);
-  a.array(r.state.reactions.ground);
   a.array(r.state.reactions.tension);
   a.array(r.state.reactions.pressure);
   a.array(r.state.reactions.contacts);

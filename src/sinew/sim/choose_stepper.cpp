@@ -177,7 +177,7 @@ class Policy {
 }  // namespace
 
 bool suits_implicit(const Model& model) {
-  return !model.ground && !ContactFinder::anything_to_find(model) && model.limited.empty() &&
+  return !ContactFinder::anything_to_find(model) && model.limited.empty() &&
          !model.has_volume_limit;
 }
 

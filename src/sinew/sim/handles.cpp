@@ -55,7 +55,10 @@ std::size_t index_in(const char* kind, std::uint64_t serial, std::uint64_t simul
 }  // namespace
 
 ObstacleHandle World::obstacle(std::string_view name) const {
-  return {serial_, id_named("obstacle", name, obstacles_)};
+  std::vector<Mover> listed;  // without the ground
+  for (std::size_t i = 0; i < obstacles_.size(); ++i)
+    if (model_->obstacles[i].listed) listed.push_back(obstacles_[i]);
+  return {serial_, id_named("obstacle", name, listed)};
 }
 
 PinHandle World::pin(std::string_view name) const {

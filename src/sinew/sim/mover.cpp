@@ -17,9 +17,9 @@ Vec3 rotation_vector(const Mat3& rotation, const Vec3& near) {
 }
 
 Pin* pin_of(Model& model, const Obstacle& obstacle) {
-  if (obstacle.nodes.size() == 0) return nullptr;
+  if (obstacle.mesh() == nullptr) return nullptr;
   for (Pin& pin : model.pins)
-    if (!pin.nodes.empty() && pin.nodes.front() == obstacle.nodes.begin) return &pin;
+    if (!pin.nodes.empty() && pin.nodes.front() == obstacle.nodes().begin) return &pin;
   return nullptr;
 }
 

@@ -69,7 +69,7 @@ void World::place(ObstacleHandle handle, const Pose& pose) {
   obstacles_[i].held = true;
   obstacles_[i].to.reset();
   set_path(i, Path{{motion_to(i, pose)}, o.center, false});
-  for (Index n = o.nodes.begin; n < o.nodes.end; ++n)
+  for (Index n = o.nodes().begin; n < o.nodes().end; ++n)
     run_.state.position[uz(n)] = o.path.at(run_.state.time, model_->rest_position[uz(n)]);
   ++changes_;
 }
@@ -103,7 +103,7 @@ ObstacleHandle World::add_tool(const std::string& name, const Vec3& center, doub
   Obstacle tool;
   tool.name = name;
   tool.center = center;
-  tool.radius = radius;
+  tool.shape = shapes::Sphere{radius};
   tool.stiffness = stiffness;
   tool.path.pivot = center;
   add_obstacle(*model_, std::move(tool));
@@ -117,7 +117,7 @@ void World::reshape(ObstacleHandle handle, double radius, double stiffness) {
   const Busy busy(*this);
   Obstacle& tool = model_->obstacles[index_of(handle)];
   const double before = obstacle_energy_of(*model_, run_.state);
-  tool.radius = radius;
+  tool.shape = shapes::Sphere{radius};
   tool.stiffness = stiffness;
   run_.state.energy.work_in += obstacle_energy_of(*model_, run_.state) - before;
   ++changes_;

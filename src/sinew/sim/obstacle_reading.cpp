@@ -13,12 +13,11 @@ double touching_distance(const Model& model) {
   return 1e-3 * longest;
 }
 
-std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
-                                            ContactFinder* finder) {
-  std::vector<ObstacleReading> readings = read_obstacles(model, state.position, state.time);
-  const bool hard = std::any_of(model.obstacles.begin(), model.obstacles.end(),
-                                [](const Obstacle& o) { return o.hard(); });
-  if (!hard) return readings;
+namespace {
+
+// Fills in force, depth and contacts of hard obstacles.
+void read_hard(const Model& model, const State& state, ContactFinder* finder,
+               std::vector<ObstacleReading>& readings) {
   for (std::size_t o = 0; o < readings.size() && o < state.obstacle_force.size(); ++o)
     if (model.obstacles[o].hard()) readings[o].force = state.obstacle_force[o];
 
@@ -32,6 +31,20 @@ std::vector<ObstacleReading> read_obstacles(const Model& model, const State& sta
     ObstacleReading& reading = readings[uz(obstacle)];
     ++reading.contacts;
     reading.depth = std::max(reading.depth, -c.gap);
+  }
+}
+
+}  // namespace
+
+std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
+                                            ContactFinder* finder) {
+  std::vector<ObstacleReading> readings = read_obstacles(model, state.position, state.time);
+  const bool hard = std::any_of(model.obstacles.begin(), model.obstacles.end(),
+                                [](const Obstacle& o) { return o.hard() && o.listed; });
+  if (hard) read_hard(model, state, finder, readings);
+  for (std::size_t o = readings.size(); o-- > 0;) {
+    if (!model.obstacles[o].listed)
+      readings.erase(readings.begin() + static_cast<std::ptrdiff_t>(o));
   }
   return readings;
 }

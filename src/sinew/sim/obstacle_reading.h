@@ -13,9 +13,9 @@ namespace sinew {
 // bodies' surfaces [m].
 double touching_distance(const Model& model);
 
-// By obstacle. Soft: as the positions are (forces/obstacles.h). Hard: the force is the mean over
-// the last step, depth that of the deepest place inside, and places count that touch. `finder`: of
-// the model; null if nothing can touch (sim/world.h).
+// By obstacle that is listed. Soft: as the positions are (forces/obstacles.h). Hard: the force is
+// the mean over the last step, depth that of the deepest place inside, and places count that touch.
+// `finder`: of the model; null if nothing can touch (sim/world.h).
 std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
                                             ContactFinder* finder);
 

@@ -50,7 +50,7 @@ Motion motion_of(const Model& model, const Body& body, const State& state) {
 // Nodes in front of those of obstacles that are meshes.
 Index own_nodes(const Model& model) {
   Index count = model.node_count();
-  for (const Obstacle& o : model.obstacles) count -= o.nodes.size();
+  for (const Obstacle& o : model.obstacles) count -= o.nodes().size();
   return count;
 }
 
@@ -81,12 +81,12 @@ State transfer_state(const Model& before, const State& old, const Model& after,
     if (known != nullptr) {
       const auto at = static_cast<std::size_t>(known - before.obstacles.data());
       if (at < old.obstacle_force.size()) s.obstacle_force[o] = old.obstacle_force[at];
-      std::copy_n(old.position.begin() + known->nodes.begin, known->nodes.size(),
-                  s.position.begin() + now.nodes.begin);
-      std::copy_n(old.half_velocity.begin() + known->nodes.begin, known->nodes.size(),
-                  s.half_velocity.begin() + now.nodes.begin);
+      std::copy_n(old.position.begin() + known->nodes().begin, known->nodes().size(),
+                  s.position.begin() + now.nodes().begin);
+      std::copy_n(old.half_velocity.begin() + known->nodes().begin, known->nodes().size(),
+                  s.half_velocity.begin() + now.nodes().begin);
     } else {
-      for (Index i = now.nodes.begin; i < now.nodes.end; ++i)
+      for (Index i = now.nodes().begin; i < now.nodes().end; ++i)
         s.position[uz(i)] = now.path.at(s.time, after.rest_position[uz(i)]);
     }
   }

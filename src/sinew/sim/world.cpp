@@ -303,8 +303,9 @@ void World::choose_steps() {
 
 void World::go_on_from(const World& other) {
   const Busy busy(*this);
-  const auto scenes = static_cast<std::ptrdiff_t>(source_.scene.obstacles.size());
-  model_->obstacles.erase(model_->obstacles.begin() + scenes, model_->obstacles.end());
+  for (std::size_t i = obstacles_.size(); i-- > 0;)
+    if (obstacles_[i].tool)
+      model_->obstacles.erase(model_->obstacles.begin() + static_cast<std::ptrdiff_t>(i));
   obstacles_ = other.obstacles_;
   pins_ = other.pins_;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {

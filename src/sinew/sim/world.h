@@ -251,7 +251,7 @@ class World {
   std::vector<Triangle> surface_;
 
   std::uint64_t next_id_ = 1;
-  std::vector<Mover> obstacles_;  // (Model::obstacles)
+  std::vector<Mover> obstacles_;  // (Model::obstacles: the scene's, the ground, then tools)
   std::vector<Mover> pins_;       // the scene's: (the first of Model::pins)
   std::vector<Patch> grabs_;      // (Controls::grabs)
   std::vector<Part> parts_;

@@ -29,7 +29,8 @@ void for_each_pushed(const Model& model, const State& state, const Obstacle& o, 
   for (std::size_t n = 0; n < model.surface_share.size(); ++n) {
     if (model.surface_share[n] == 0.0 || model.inverse_mass[n] == 0.0) continue;
     const Vec3 r = state.position[n] - center;
-    if (r.norm() < o.radius) f(n, obstacle_push(r, o.radius, o.stiffness * model.surface_share[n]));
+    if (r.norm() < o.soft_radius())
+      f(n, obstacle_push(r, o.soft_radius(), o.stiffness * model.surface_share[n]));
   }
 }
 
@@ -49,7 +50,6 @@ const std::vector<Vec3>& World::forces() {
     forces_ = evaluator_->evaluate(controls_, run_.state).force;
   });
   const Reactions& r = run_.state.reactions;
-  for (std::size_t n = 0; n < r.ground.size(); ++n) forces_[n] += r.ground[n];
   for (const ContactPush& p : r.contacts)
     for (std::size_t a = 0; a < p.count(); ++a) forces_[uz(p.node[a])] += p.weight[a] * p.push;
   forces_of_ = changes_;
@@ -110,7 +110,8 @@ void World::contacts(std::size_t obstacle, std::vector<ContactPoint>& out) {
       const Vec3 r = x[n] - center;
       const double distance = r.norm();
       const Vec3 normal = distance > 0.0 ? Vec3(r / distance) : Vec3::Zero();
-      out.push_back({point(x[n]), point(normal), o.radius - distance, static_cast<Index>(n)});
+      out.push_back(
+          {point(x[n]), point(normal), o.soft_radius() - distance, static_cast<Index>(n)});
     });
     return;
   }
@@ -129,7 +130,7 @@ double World::depth(std::size_t obstacle) {
   if (!o.hard()) {
     const Vec3 center = o.path.at(run_.state.time, o.center);
     for_each_pushed(*model_, run_.state, o, [&](std::size_t n, const Vec3&) {
-      deepest = std::max(deepest, o.radius - (run_.state.position[n] - center).norm());
+      deepest = std::max(deepest, o.soft_radius() - (run_.state.position[n] - center).norm());
     });
     return deepest;
   }

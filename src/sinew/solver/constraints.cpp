@@ -8,16 +8,14 @@
 #include "sinew/forces/terms.h"
 #include "sinew/forces/volume.h"
 #include "sinew/solver/bound.h"
-#include "sinew/solver/mean_edge.h"
 
 namespace sinew {
 namespace {
 
 constexpr double ratio = 10.0;  // of a condition's stiffness and what its nodes resist with
 
-// Largest distance from a bound that is good enough: of a node below the ground, as a share of the
-// mean edge; of a cell's volume, as a share of it (a tenth of its limit where that is less).
-constexpr double ground_tolerance = 1e-4;
+// Largest distance of a cell's volume from its bound that is good enough, as a share of it (a tenth
+// of its limit where that is less).
 constexpr double cell_tolerance = 1e-4;
 
 // 1/D_i [m/N] (nodes), 0 where the motion is given: the diagonal of M inertia + C rate + K at rest.
@@ -117,20 +115,9 @@ double parallel_max(std::size_t n, const F& f) {
 
 Constraints::Constraints(const Model& model, double inertia, double rate, bool friction)
     : model_(model),
-      friction_(friction && model.ground && model.ground->friction > 0.0),
-      narrow_phase_(model, node_compliance(model, inertia, rate), ratio, friction) {
-  if (!model.ground && model.limited.empty() && !model.has_volume_limit) return;
+      contacts_(model, node_compliance(model, inertia, rate), ratio, inertia, friction) {
+  if (model.limited.empty() && !model.has_volume_limit) return;
   const std::vector<double> compliance = node_compliance(model, inertia, rate);
-  if (model.ground) {
-    // Single masses have no size but the way they fall in a step.
-    const double edge = mean_edge(model);
-    ground_tolerance_ =
-        ground_tolerance * (edge > 0.0 ? edge : model.start_gravity.norm() / inertia);
-    ground_stiffness_.assign(uz(model.body_node_count()), 0.0);
-    for (std::size_t i = 0; i < ground_stiffness_.size(); ++i) {
-      if (compliance[i] > 0.0) ground_stiffness_[i] = ratio / compliance[i];
-    }
-  }
   for (const Index s : model.limited) {
     const Edge& ends = model.springs[uz(s)];
     spring_stiffness_.push_back(ratio / (compliance[uz(ends[0])] + compliance[uz(ends[1])]));
@@ -145,52 +132,19 @@ Constraints::Constraints(const Model& model, double inertia, double rate, bool f
 }
 
 bool Constraints::empty() const {
-  return ground_stiffness_.empty() && spring_stiffness_.empty() && cell_stiffness_.empty() &&
-         narrow_phase_.empty();
+  return spring_stiffness_.empty() && cell_stiffness_.empty() && contacts_.empty();
 }
 
 void Constraints::start(const State& state, const std::vector<Vec3>* from, double step) {
-  narrow_phase_.start(state, from, step);
-  from_ = from;
+  contacts_.start(state, from, step);
   hardness_ = 1.0;
   now_ = state.reactions;
-  if (now_.ground.size() != ground_stiffness_.size()) {
-    now_.ground.assign(ground_stiffness_.size(), Vec3::Zero());
-  }
   if (now_.tension.size() != spring_stiffness_.size()) {
     now_.tension.assign(spring_stiffness_.size(), 0.0);
   }
   if (now_.pressure.size() != cell_stiffness_.size()) {
     now_.pressure.assign(cell_stiffness_.size(), 0.0);
   }
-  grip_.assign(friction_ ? now_.ground.size() : 0, 0.0);
-  parallel_for(static_cast<Index>(grip_.size()), [&](Index i) {
-    grip_[uz(i)] = model_.ground->friction * model_.ground->normal.dot(now_.ground[uz(i)]);
-  });
-}
-
-double Constraints::height(const Vec3& x) const {
-  return model_.ground->normal.dot(x - model_.ground->point);
-}
-
-// Way along the ground since the start of the step.
-Vec3 Constraints::slip(std::size_t node, const Vec3& x) const {
-  const Vec3 way = x - (*from_)[node];
-  return way - model_.ground->normal.dot(way) * model_.ground->normal;
-}
-
-// Of the ground on a node at x [N].
-Vec3 Constraints::ground_push(std::size_t node, const Vec3& x) const {
-  const double k = hardness_ * ground_stiffness_[node];
-  if (k == 0.0) return Vec3::Zero();
-  const Vec3& n = model_.ground->normal;
-  const Vec3& before = now_.ground[node];
-  const double normal = n.dot(before);
-  Vec3 push = -bound_pull(height(x), 0.0, no_limit, k, -normal) * n;
-  if (friction_ && grip_[node] > 0.0) {
-    push -= friction_pull(slip(node, x), grip_[node], k, normal * n - before);
-  }
-  return push;
 }
 
 double Constraints::spring_pull(std::size_t k, double length) const {
@@ -207,19 +161,7 @@ double Constraints::cell_pull(std::size_t c, double volume) const {
 }
 
 double Constraints::value(const std::vector<Vec3>& x, std::span<const double> tet_volume) const {
-  double energy = parallel_sum(static_cast<Index>(ground_stiffness_.size()), [&](Index i) {
-    const auto node = uz(i);
-    const double k = hardness_ * ground_stiffness_[node];
-    if (k == 0.0) return 0.0;
-    const Vec3& n = model_.ground->normal;
-    const double normal = n.dot(now_.ground[node]);
-    double e = bound_energy(height(x[node]), 0.0, no_limit, k, -normal);
-    if (friction_ && grip_[node] > 0.0) {
-      e += friction_energy(slip(node, x[node]), grip_[node], k, normal * n - now_.ground[node]);
-    }
-    return e;
-  });
-  energy += parallel_sum(static_cast<Index>(spring_stiffness_.size()), [&](Index i) {
+  double energy = parallel_sum(static_cast<Index>(spring_stiffness_.size()), [&](Index i) {
     const auto s = uz(model_.limited[uz(i)]);
     const Interval range = spring_interval(model_, s);
     const double length = (x[uz(model_.springs[s][1])] - x[uz(model_.springs[s][0])]).norm();
@@ -233,15 +175,13 @@ double Constraints::value(const std::vector<Vec3>& x, std::span<const double> te
     return bound_energy(sum_of_cell(model_, c, tet_volume), range.low, range.high,
                         hardness_ * cell_stiffness_[c], now_.pressure[c]);
   });
-  energy += narrow_phase_.value(x);
+  energy += contacts_.value(x);
   return energy;
 }
 
-template <typename Ground, typename Spring, typename Cell>
-void Constraints::spread(const std::vector<Vec3>& x, const Ground& ground, const Spring& spring,
-                         const Cell& cell, const TetVolumes& tets, std::vector<Vec3>& force) const {
-  parallel_for(static_cast<Index>(ground_stiffness_.size()),
-               [&](Index i) { force[uz(i)] += ground(uz(i)); });
+template <typename Spring, typename Cell>
+void Constraints::spread(const std::vector<Vec3>& x, const Spring& spring, const Cell& cell,
+                         const TetVolumes& tets, std::vector<Vec3>& force) const {
   for_each_limited(model_, [&](std::size_t k) {
     const auto [a, b] = model_.springs[uz(model_.limited[k])];
     const Vec3 x_ij = x[uz(b)] - x[uz(a)];
@@ -262,39 +202,23 @@ void Constraints::spread(const std::vector<Vec3>& x, const Ground& ground, const
 
 void Constraints::add_forces(const std::vector<Vec3>& x, const TetVolumes& tets,
                              std::vector<Vec3>& force) const {
-  narrow_phase_.add_forces(x, force);
+  contacts_.add_forces(x, force);
   spread(
-      x, [&](std::size_t i) { return ground_push(i, x[i]); },
-      [&](std::size_t k, double length) { return spring_pull(k, length); },
+      x, [&](std::size_t k, double length) { return spring_pull(k, length); },
       [&](std::size_t c) { return cell_pull(c, sum_of_cell(model_, c, tets.volume)); }, tets,
       force);
 }
 
 void Constraints::add_reactions(const std::vector<Vec3>& x, const TetVolumes& tets,
                                 std::vector<Vec3>& force) const {
-  narrow_phase_.add_reactions(force);
+  contacts_.add_reactions(force);
   spread(
-      x, [&](std::size_t i) { return now_.ground[i]; },
-      [&](std::size_t k, double) { return now_.tension[k]; },
+      x, [&](std::size_t k, double) { return now_.tension[k]; },
       [&](std::size_t c) { return now_.pressure[c]; }, tets, force);
 }
 
 void Constraints::linearise(const std::vector<Vec3>& x, const TetVolumes& tets) {
-  narrow_phase_.linearise(x);
-  node_block_.assign(ground_stiffness_.size(), Mat3::Zero());
-  parallel_for(static_cast<Index>(node_block_.size()), [&](Index i) {
-    const auto node = uz(i);
-    const double k = hardness_ * ground_stiffness_[node];
-    if (k == 0.0) return;
-    const Vec3& n = model_.ground->normal;
-    const double normal = n.dot(now_.ground[node]);
-    const double along = bound_stiffness(height(x[node]), 0.0, no_limit, k, -normal);
-    node_block_[node] = along * n * n.transpose();
-    if (friction_ && grip_[node] > 0.0) {
-      node_block_[node] += friction_stiffness(slip(node, x[node]), grip_[node], k,
-                                              normal * n - now_.ground[node], n);
-    }
-  });
+  contacts_.linearise(x);
   spring_tangent_.assign(spring_stiffness_.size(), {});
   parallel_for(static_cast<Index>(spring_tangent_.size()), [&](Index i) {
     const auto s = uz(model_.limited[uz(i)]);
@@ -316,9 +240,7 @@ void Constraints::linearise(const std::vector<Vec3>& x, const TetVolumes& tets) 
 
 void Constraints::add_stiffness_times(const TetVolumes& tets, const std::vector<Vec3>& u,
                                       std::vector<Vec3>& out) const {
-  narrow_phase_.add_stiffness_times(u, out);
-  parallel_for(static_cast<Index>(node_block_.size()),
-               [&](Index i) { out[uz(i)] += node_block_[uz(i)] * u[uz(i)]; });
+  contacts_.add_stiffness_times(u, out);
   for_each_limited(model_, [&](std::size_t k) {
     const SpringTangent& tangent = spring_tangent_[k];
     if (tangent.along == 0.0) return;
@@ -346,12 +268,6 @@ void Constraints::add_stiffness_times(const TetVolumes& tets, const std::vector<
 ConstraintError Constraints::update(const std::vector<Vec3>& x,
                                     std::span<const double> tet_volume) {
   Reactions next = now_;
-  const double ground = parallel_max(next.ground.size(), [&](std::size_t i) {
-    if (ground_stiffness_[i] == 0.0) return 0.0;
-    next.ground[i] = ground_push(i, x[i]);
-    const double k = hardness_ * ground_stiffness_[i];
-    return (next.ground[i] - now_.ground[i]).norm() / (k * ground_tolerance_);
-  });
   const double springs = parallel_max(next.tension.size(), [&](std::size_t i) {
     const auto s = uz(model_.limited[i]);
     const double length = (x[uz(model_.springs[s][1])] - x[uz(model_.springs[s][0])]).norm();
@@ -367,42 +283,25 @@ ConstraintError Constraints::update(const std::vector<Vec3>& x,
     const double tolerance = std::min(cell_tolerance, 0.1 * model_.volume_limit[i]);
     return std::abs(next.pressure[i] - now_.pressure[i]) / (k * tolerance * model_.cell_volume[i]);
   });
-  double grips = 0.0;
-  if (friction_) {
-    const auto count = static_cast<Index>(grip_.size());
-    const auto grip = [&](Index i) {
-      return model_.ground->friction * model_.ground->normal.dot(next.ground[uz(i)]);
-    };
-    const double change =
-        parallel_sum(count, [&](Index i) { return std::abs(grip(i) - grip_[uz(i)]); });
-    parallel_for(count, [&](Index i) { grip_[uz(i)] = grip(i); });
-    const double sum = parallel_sum(count, [&](Index i) { return grip_[uz(i)]; });
-    if (change > 0.0) grips = sum > 0.0 ? change / (grip_tolerance * sum) : no_limit;
-  }
   now_ = std::move(next);
-  const ContactConstraints::Change touching = narrow_phase_.update(x);
-  now_.contacts = narrow_phase_.pushes();
-  return {std::max({ground, springs, cells, touching.distance}), std::max(grips, touching.grip),
-          touching.anew};
+  const ContactConstraints::Change touching = contacts_.update(x);
+  now_.contacts = contacts_.pushes();
+  return {std::max({springs, cells, touching.distance}), touching.grip, touching.anew};
 }
 
 void Constraints::store(State& state) const {
   state.reactions = now_;
   state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
-  narrow_phase_.add_obstacle_forces(state.obstacle_force);
+  contacts_.add_obstacle_forces(state.obstacle_force);
 }
 
 Index Constraints::contacts() const {
-  return static_cast<Index>(std::count_if(now_.ground.begin(), now_.ground.end(),
-                                          [](const Vec3& push) { return !push.isZero(0.0); }) +
-                            std::ssize(now_.contacts));
+  return static_cast<Index>(now_.contacts.size());
 }
 
 bool act(const Reactions& reactions) {
   const auto pulls = [](double s) { return s != 0.0; };
   return !reactions.contacts.empty() ||
-         std::any_of(reactions.ground.begin(), reactions.ground.end(),
-                     [](const Vec3& push) { return !push.isZero(0.0); }) ||
          std::any_of(reactions.tension.begin(), reactions.tension.end(), pulls) ||
          std::any_of(reactions.pressure.begin(), reactions.pressure.end(), pulls);
 }

@@ -1,4 +1,4 @@
-// The ground with friction, limits of springs and limits of volume as part of what implicit steps
+// Contacts with friction, limits of springs and limits of volume as part of what implicit steps
 // and rest states minimise. docs/methods/constraints.md.
 #pragma once
 
@@ -20,12 +20,13 @@ struct ConstraintError {
 };
 
 // Conditions on
-//   the height of each free node above the ground       n . (x - point) >= 0
+//   the gap of each contact (contact_constraints.h)     gap >= 0, with friction
 //   the length of each limited spring                   (1 - tau_c) l0 <= l <= (1 + tau_s) l0
 //   the volume of each limited cell                     |V - V_c| <= limit V_c
-// each as an energy of solver/bound.h, and friction on the nodes that the ground pushes. minimise()
-// finds the positions for given multipliers; update() makes the pushes found the new multipliers,
-// until they stay as they are (minimise_augmented_lagrangian).
+// each as an energy of solver/bound.h. minimise() finds the positions for given multipliers;
+// update() makes the pushes found the new multipliers, until they stay as they are
+// (minimise_augmented_lagrangian). The ground is a plane obstacle, so its contacts are among the
+// contacts.
 //
 // The stiffness k of a condition on q is ten times what its nodes resist with one by one,
 // 1 / sum_i (|dq/dx_i|^2 / D_i) with D_i the diagonal of M inertia + C rate + K: what bounds the
@@ -58,15 +59,13 @@ class Constraints {
   void add_stiffness_times(const TetVolumes& tets, const std::vector<Vec3>& u,
                            std::vector<Vec3>& out) const;
 
-  // What linearise() found: a symmetric block for every node [N/m] (nodes of bodies, empty without
-  // a ground); for every limited spring k n n^T + a (1 - n n^T) between its ends; for every cell
-  // k dV dV^T.
+  // What linearise() found: for every limited spring k n n^T + a (1 - n n^T) between its ends; for
+  // every cell k dV dV^T. Contacts: touching().tangents().
   struct SpringTangent {
     Vec3 direction = Vec3::Zero();  // n
     double along = 0.0;             // k [N/m]
     double across = 0.0;            // a [N/m]
   };
-  const std::vector<Mat3>& node_blocks() const { return node_block_; }
   const std::vector<SpringTangent>& spring_tangents() const { return spring_tangent_; }
   const std::vector<double>& cell_stiffness() const { return cell_tangent_; }  // [N/m5]
   // What the limited cells press each tet with [Pa] (tets); empty without such cells. It acts by
@@ -80,40 +79,31 @@ class Constraints {
   // Multiplies every k; start() takes that back.
   void harden(double factor) {
     hardness_ *= factor;
-    narrow_phase_.harden(factor);
+    contacts_.harden(factor);
   }
 
-  Index contacts() const;  // nodes that the ground pushes, and contacts that push
+  Index contacts() const;  // contacts that push
   // Leaves the multipliers in the state, and what bodies push the obstacles with.
   void store(State& state) const;
-  ContactConstraints& touching() { return narrow_phase_; }
-  const ContactConstraints& touching() const { return narrow_phase_; }
+  ContactConstraints& touching() { return contacts_; }
+  const ContactConstraints& touching() const { return contacts_; }
 
  private:
-  template <typename Ground, typename Spring, typename Cell>
-  void spread(const std::vector<Vec3>& x, const Ground& ground, const Spring& spring,
-              const Cell& cell, const TetVolumes& tets, std::vector<Vec3>& force) const;
-  double height(const Vec3& x) const;
-  Vec3 slip(std::size_t node, const Vec3& x) const;
-  Vec3 ground_push(std::size_t node, const Vec3& x) const;
+  template <typename Spring, typename Cell>
+  void spread(const std::vector<Vec3>& x, const Spring& spring, const Cell& cell,
+              const TetVolumes& tets, std::vector<Vec3>& force) const;
   double spring_pull(std::size_t k, double length) const;
   double cell_pull(std::size_t c, double volume) const;
 
   const Model& model_;
-  bool friction_;
-  const std::vector<Vec3>* from_ = nullptr;
   double hardness_ = 1.0;
-  double ground_tolerance_ = 0.0;         // [m]
-  std::vector<double> ground_stiffness_;  // [N/m] (nodes of bodies; 0: no condition)
   std::vector<double> spring_stiffness_;  // [N/m] (limited)
   std::vector<double> cell_stiffness_;    // [N/m5] (cells; 0: no condition)
   Reactions now_;
-  std::vector<double> grip_;  // mu times the normal force of the pass before [N] (nodes of bodies)
-  std::vector<Mat3> node_block_;
   std::vector<SpringTangent> spring_tangent_;
   std::vector<double> cell_tangent_;
   std::vector<double> tet_pressure_;
-  ContactConstraints narrow_phase_;
+  ContactConstraints contacts_;
 };
 
 // Whether anything pushes.

@@ -10,7 +10,7 @@ namespace sinew {
 namespace {
 
 // Depth that is good enough, and gap below which contacts are looked at before they touch, as
-// shares of the mean edge.
+// shares of the mean edge. Planes are looked at from any distance: see ContactReach.
 constexpr double depth_tolerance = 1e-4;
 constexpr double reach_share = 0.05;
 // So often are contacts found anew before those that are held stay as they are.
@@ -24,12 +24,14 @@ void for_each_node(const Contact& c, const F& f) {
 }  // namespace
 
 ContactConstraints::ContactConstraints(const Model& model, const std::vector<double>& compliance,
-                                       double ratio, bool friction)
+                                       double ratio, double inertia, bool friction)
     : model_(model), ratio_(ratio), friction_(friction), compliance_(compliance) {
   if (!ContactFinder::anything_to_find(model)) return;
+  // Single masses have no size but the way they fall in a step.
   const double edge = mean_edge(model);
-  tolerance_ = depth_tolerance * edge;
-  reach_ = reach_share * edge;
+  const double size = edge > 0.0 ? edge : model.start_gravity.norm() / inertia;
+  tolerance_ = depth_tolerance * size;
+  reach_ = reach_share * size;
   finder_ = std::make_unique<ContactFinder>(model);
 }
 
@@ -67,7 +69,7 @@ ContactConstraints::Held ContactConstraints::hold(const Contact& c) const {
 // Contacts at x; what they push with is that of the same pair before, or of the same feature where
 // it has gone on to another part of its owner.
 void ContactConstraints::find(const std::vector<Vec3>& x) {
-  finder_->find(from_ != nullptr ? *from_ : here_, x, before_, now_, reach_, found_);
+  finder_->find(from_ != nullptr ? *from_ : here_, x, before_, now_, {reach_, no_limit}, found_);
   if (passes_ > free_passes) {
     add_new();
     return;

@@ -19,9 +19,10 @@ namespace sinew {
 // partner has changed.
 class ContactConstraints {
  public:
-  // compliance: of the nodes [m/N]; ratio: of a contact's stiffness and what its nodes resist with.
+  // compliance: of the nodes [m/N]; ratio: of a contact's stiffness and what its nodes resist with;
+  // inertia [1/s2]: as in Objective.
   ContactConstraints(const Model& model, const std::vector<double>& compliance, double ratio,
-                     bool friction);
+                     double inertia, bool friction);
 
   bool empty() const { return !finder_; }
 

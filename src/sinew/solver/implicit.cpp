@@ -65,8 +65,8 @@ double work_of_the_outside(const Model& model, const Field& before, double since
 }  // namespace
 
 bool may_take_single(const Model& model, double tolerance) {
-  return tolerance >= single_tolerance && !model.ground && model.limited.empty() &&
-         !model.has_volume_limit && !ContactFinder::anything_to_find(model);
+  return tolerance >= single_tolerance && model.limited.empty() && !model.has_volume_limit &&
+         !ContactFinder::anything_to_find(model);
 }
 
 ImplicitStepper::ImplicitStepper(const Model& model)
@@ -176,7 +176,7 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
   if (!pull) return false;
   account(x, state.time - h, h, *pull, state);
   if (constraints_->empty()) return true;
-  // The impulses of the ground and the limits work on the mean of the velocities before and after
+  // The impulses of contacts and limits work on the mean of the velocities before and after
   // the step, as in Verlet's balance: none where the body just rests.
   Field push(x.size(), Vec3::Zero());
   constraints_->add_reactions(state.position, forces_.tets(state.position), push);

@@ -23,7 +23,7 @@ struct ImplicitOptions {
 };
 
 // Whether steps to this tolerance may take forces in single precision: its digits are more than
-// enough, and the model has no ground, no contacts and no limits.
+// enough, and the model has no contacts and no limits.
 bool may_take_single(const Model& model, double tolerance);
 
 class ImplicitStepper {
@@ -40,10 +40,10 @@ class ImplicitStepper {
   // starts from x_n + (1 - g) h v_1 and v_n + (1 - g)/g (v_1 - v_n). Both schemes are L-stable.
   // Dashpots and drag see the velocity at the end of the (part) step.
   //
-  // The ground, with friction, and the limits hold at the end of the step (solver/constraints.h).
+  // Contacts, with friction, and limits hold at the end of the step (solver/constraints.h).
   // A step in which one of them acts is one of backward Euler: SDIRK2 would carry what stops an
   // impact in its first part on into the second, by (1 - g)/g = 2.4, and throw the body back.
-  // Impacts are plastic, whatever the ground's restitution.
+  // Impacts are plastic, whatever the restitution.
   //
   // A tangled body (forces/inversion_recovery.h) is led back towards its rest shape instead.
   //

@@ -3,7 +3,7 @@
 #include <iterator>
 
 #include "sinew/base/parallel.h"
-#include "sinew/contact/ground.h"
+#include "sinew/contact/planes.h"
 #include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/terms.h"
 #include "sinew/solver/implicit.h"
@@ -49,22 +49,25 @@ StepReport ImplicitStepper::lead_back(std::span<const Index> tangled, double h,
   Righted righted;
   for (int way = 0; way < most_ways; ++way) {
     lead_tangled_bodies(model_, controls, h, tangled, led);
-    if (model_.ground) lift_onto_ground(model_, led.position);
+    lift_onto_planes(model_, state.time + h, led.position);
     righted = find_righted(model_, tangled, led);
     if (!righted.half) break;
   }
   calm_bodies(model_, righted.bodies, led);
 
+  std::vector<HalfSpace> planes;
+  for_each_hard_plane(model_, state.time + h,
+                      [&](const HalfSpace& plane) { planes.push_back(plane); });
   Model others = model_;
   for (const Index b : tangled) {
     const Range nodes = model_.bodies[uz(b)].nodes;
     for (auto i = uz(nodes.begin); i < uz(nodes.end); ++i) {
       if (model_.inverse_mass[i] == 0.0) continue;
       others.inverse_mass[i] = 0.0;
-      if (model_.ground && !(model_.ground->normal.dot(led.position[i] - model_.ground->point) >
-                             1e-12 * led.position[i].norm())) {
-        const double speed = model_.ground->normal.dot(led.half_velocity[i]);
-        led.half_velocity[i] -= std::min(0.0, speed) * model_.ground->normal;
+      for (const HalfSpace& plane : planes) {
+        if (plane.height(led.position[i]) > 1e-12 * led.position[i].norm()) continue;
+        const double speed = plane.normal.dot(led.half_velocity[i]);
+        led.half_velocity[i] -= std::min(0.0, speed) * plane.normal;
       }
       state.position[i] = led.position[i];
       state.half_velocity[i].setZero();

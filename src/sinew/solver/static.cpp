@@ -8,6 +8,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
+#include "sinew/contact/planes.h"
 #include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
@@ -119,9 +120,17 @@ std::vector<Index> unheld_groups(const Model& model, const Controls& controls) {
   return unheld;
 }
 
-// A body that nothing holds rests only under forces that cancel each other, or that press it
-// straight against the ground.
-void refuse_unheld_bodies(const Model& model, const Controls& controls, const Field& force) {
+// A group of joined bodies that nothing holds but the hard plane that its forces press it on.
+struct Resting {
+  std::size_t group = 0;
+  HalfSpace plane;
+};
+
+// The groups that rest on a plane. Throws for a body that nothing holds: it rests only under forces
+// that cancel each other, or that press it straight against one plane. `force`: the outer forces
+// [N] (nodes).
+std::vector<Resting> resting_groups(const Model& model, const Controls& controls, double time,
+                                    const Field& force) {
   const std::vector<Index> unheld = unheld_groups(model, controls);
   std::vector<Vec3> net(unheld.size(), Vec3::Zero());
   std::vector<double> size(unheld.size(), 0.0);
@@ -132,46 +141,53 @@ void refuse_unheld_bodies(const Model& model, const Controls& controls, const Fi
       size[uz(unheld[b])] += force[i].norm();
     }
   }
+  std::vector<Resting> out;
   for (std::size_t b = 0; b < unheld.size(); ++b) {
     if (unheld[b] < 0) continue;
     const auto g = uz(unheld[b]);
     Vec3 lacks = net[g];
-    if (model.ground)
-      lacks -= std::min(0.0, model.ground->normal.dot(lacks)) * model.ground->normal;
+    bool planes = false;
+    HalfSpace best;
+    for_each_hard_plane(model, time, [&](const HalfSpace& plane) {
+      planes = true;
+      const Vec3 left = net[g] - std::min(0.0, plane.normal.dot(net[g])) * plane.normal;
+      if (!(left.norm() < lacks.norm())) return;
+      lacks = left;
+      best = plane;
+    });
     if (lacks.norm() > 1e-6 * size[g]) {
       throw Error(ErrorKind::input,
                   fmt::format("body '{}' has no rest state: nothing holds it against {:.4g} N{}",
                               model.bodies[b].name, lacks.norm(),
-                              model.ground ? " (rest states know no friction)" : ""),
+                              planes ? " (rest states know no friction)" : ""),
                   "pin it, attach it, or take stepper = \"verlet\" or \"implicit\"");
     }
+    if (g == b && net[g].norm() > 1e-6 * size[g]) out.push_back({g, best});
+  }
+  return out;
+}
+
+// Puts bodies that only a plane holds down on it, or lifts them onto it, straight along its normal.
+void put_down(const Model& model, const Controls& controls, const std::vector<Resting>& resting,
+              State& state) {
+  const std::vector<Index> unheld = unheld_groups(model, controls);
+  for (const Resting& r : resting) {
+    const auto for_each = [&](const auto& f) {
+      for (std::size_t b = 0; b < unheld.size(); ++b) {
+        if (unheld[b] != static_cast<Index>(r.group)) continue;
+        const Range nodes = model.bodies[b].nodes;
+        for (auto i = uz(nodes.begin); i < uz(nodes.end); ++i) f(state.position[i]);
+      }
+    };
+    double low = no_limit;
+    for_each([&](const Vec3& x) { low = std::min(low, r.plane.height(x)); });
+    for_each([&](Vec3& x) { x -= low * r.plane.normal; });
   }
 }
 
-// Puts bodies that only the ground holds down on it, or lifts them onto it.
-void put_on_ground(const Model& model, const Controls& controls, State& state) {
-  const std::vector<Index> unheld = unheld_groups(model, controls);
-  std::vector<double> lowest(unheld.size(), no_limit);
-  const auto for_each = [&](const auto& f) {
-    for (std::size_t b = 0; b < unheld.size(); ++b) {
-      if (unheld[b] < 0) continue;
-      const Range nodes = model.bodies[b].nodes;
-      for (auto i = uz(nodes.begin); i < uz(nodes.end); ++i) {
-        f(lowest[uz(unheld[b])], state.position[i]);
-      }
-    }
-  };
-  const Vec3& n = model.ground->normal;
-  for_each([&](double& low, Vec3& x) { low = std::min(low, n.dot(x - model.ground->point)); });
-  for_each([&](double& low, Vec3& x) { x -= low * n; });
-}
-
-// What ties a body that only the ground holds to its place [1/s2]: see StaticSolver::settle. A
+// What ties a body that only a plane holds to its place [1/s2]: see StaticSolver::settle. A
 // hundredth of the edge of a mean tet under the body's own weight.
 double nudge(const Model& model, const Controls& controls) {
-  if (!model.ground) return 0.0;
-  const std::vector<Index> unheld = unheld_groups(model, controls);
-  if (std::all_of(unheld.begin(), unheld.end(), [](Index g) { return g < 0; })) return 0.0;
   return 0.01 * controls.gravity.norm() / mean_edge(model);
 }
 
@@ -238,7 +254,7 @@ int StaticSolver::solve_tangent(const Configuration& at, const Field& rhs, doubl
   return products;
 }
 
-// Minimises. Along the ground, and about its normal, nothing holds a body that rests on it: a weak
+// Minimises. Along a plane, and about its normal, nothing holds a body that rests on it: a weak
 // spring from every node to where it starts does, sigma m / 2 |x - x_start|^2, which moves along
 // until it carries nothing (the proximal point method, Rockafellar 1976).
 NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& options,
@@ -295,17 +311,19 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
                                State& state) {
   StepReport report;
   const double start_time = state.time;
-  nudge_ = nudge(model_, controls);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
   state.last_step = 0.0;
   state.time = time;  // of the loads; the pins follow below
-  refuse_unheld_bodies(model_, controls, outer_forces(model_, controls, state));
+  const std::vector<Resting> resting =
+      resting_groups(model_, controls, time, outer_forces(model_, controls, state));
+  nudge_ = resting.empty() ? 0.0 : nudge(model_, controls);
   put_at_rest_shape(model_, find_tangled(model_, find_low_tets(model_, state.position)), state);
+
   // The dead force makes the start of the solve a rest state, so that the way from there to the
   // goal can be cut into small steps.
   Field dead_force = forces_.evaluate(controls, state).force;
   keep_free(model_, dead_force);
-  if (nudge_ > 0.0) put_on_ground(model_, controls, state);
+  put_down(model_, controls, resting, state);
 
   const int turns =
       static_cast<int>(std::ceil(pins_turn(model_, start_time, time) / turn_per_load_step));

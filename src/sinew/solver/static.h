@@ -42,9 +42,9 @@ class StaticSolver {
   // A body that is tangled at the start (forces/inversion_recovery.h) starts from its rest shape
   // instead, moved rigidly to where it is.
   //
-  // The ground, without friction, and the limits hold in it (solver/constraints.h). A body that
-  // only the ground holds is put down on it first, straight along its normal, and then keeps its
-  // place along the ground as nearly as it can.
+  // Contacts, without friction, and limits hold in it (solver/constraints.h). A body that only a
+  // hard plane holds, the ground or an obstacle, is put down on it first, straight along its
+  // normal, and then keeps its place along the plane as nearly as it can.
   //
   // Where Newton's method does not converge, pins and loads are applied in smaller steps, and after
   // two cuts dynamic relaxation is tried once.
@@ -74,7 +74,7 @@ class StaticSolver {
 
   const Model& model_;
   ForceEvaluator forces_;
-  double nudge_ = 0.0;  // see settle() [1/s2]; 0 where no body rests on the ground alone
+  double nudge_ = 0.0;  // see settle() [1/s2]; 0 where no body rests on a plane alone
   LinearSolver linear_;
   Constraints constraints_;
   // The model with less stiff volume, where that helps; else none.

@@ -402,22 +402,23 @@ void TangentMatrix::assemble_joints(const Objective& objective, const Field& x, 
   joint_weight_.clear();
   joint_diagonal_.clear();
   pull_.clear();
+  const auto add = [&](std::span<const Index> nodes, std::span<const double> weights,
+                       const Mat3& block) {
+    if (nodes.size() > 1) return add_joint(nodes, weights, block);
+    if (pull_.empty()) pull_.assign(free_.size(), Mat3::Zero());
+    pull_[uz(nodes[0])] += weights[0] * weights[0] * block;
+  };
   if (objective.constraints != nullptr) {
     for (const auto& tangent : objective.constraints->touching().tangents()) {
       const auto count = static_cast<std::size_t>(tangent.contact->count);
-      add_joint(std::span(tangent.contact->node).first(count),
-                std::span(tangent.contact->weight).first(count), tangent.block);
+      add(std::span(tangent.contact->node).first(count),
+          std::span(tangent.contact->weight).first(count), tangent.block);
     }
   }
   const Configuration at{objective.model, objective.controls, x, time};
   for_each_type(Terms{}, [&](auto term) {
     term.for_each_element(at, Tangent::full, [&](const Element& e) {
-      if (e.nodes.size() == 1) {
-        if (pull_.empty()) pull_.assign(free_.size(), Mat3::Zero());
-        pull_[uz(e.nodes[0])] += e.weights[0] * e.weights[0] * e.block;
-      } else if (!term.isotropic) {
-        add_joint(e.nodes, e.weights, e.block);
-      }
+      if (e.nodes.size() == 1 || !term.isotropic) add(e.nodes, e.weights, e.block);
     });
   });
 }
@@ -431,9 +432,6 @@ void TangentMatrix::assemble_nodes(const Objective& objective) {
     const double weight = (objective.inertia + objective.rate * model.drag[n]) * model.mass[n];
     Mat3 own = weight * Mat3::Identity();
     if (!pull_.empty()) own += pull_[n];
-    if (objective.constraints != nullptr && n < objective.constraints->node_blocks().size()) {
-      own += objective.constraints->node_blocks()[n];
-    }
     own_block_[n] = Block3(own);
     if (!joint_diagonal_.empty()) own += joint_diagonal_[n];
     own.diagonal().array() += static_cast<double>(far_sum_[n]);

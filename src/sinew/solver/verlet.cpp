@@ -7,7 +7,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
-#include "sinew/contact/ground.h"
+#include "sinew/contact/planes.h"
 #include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/node_kernels.h"
@@ -95,7 +95,7 @@ void follow_positions(const Model& model, const std::vector<Vec3>& force,
   });
 }
 
-// Projects the limits, with the ground as a constraint among them; velocities follow.
+// Projects the limits, with hard planes as constraints among them; velocities follow.
 void enforce_limits(const Model& model, const std::vector<Vec3>& force, double h, State& state,
                     StepReport& report) {
   const std::vector<Vec3> predicted = state.position;
@@ -104,7 +104,7 @@ void enforce_limits(const Model& model, const std::vector<Vec3>& force, double h
     sweep = sweep_limits(model, state.position);
     if (sweep.moved > 0) {
       ++report.limit_sweeps;
-      if (model.ground) lift_onto_ground(model, state.position);
+      lift_onto_planes(model, state.time + h, state.position);
     }
   }
   if (report.limit_sweeps == 0) return;

@@ -1,0 +1,33 @@
+// Hard planes as half-spaces: what limits, inversion recovery and rest states need to know of them.
+// As contacts planes are obstacles like any other (contact/colliders.h). docs/methods/ground.md.
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "sinew/model/model.h"
+
+namespace sinew {
+
+struct HalfSpace {
+  Vec3 point = Vec3::Zero();    // [m] on the plane
+  Vec3 normal = Vec3::UnitY();  // [-] unit, to the free side
+
+  double height(const Vec3& x) const { return normal.dot(x - point); }  // [m]
+};
+
+// Calls f(half_space) for every hard plane, the ground among them, as it is at the time [s].
+template <typename F>
+void for_each_hard_plane(const Model& model, double time, const F& f) {
+  for (const Obstacle& o : model.obstacles) {
+    if (!o.hard() || !std::holds_alternative<shapes::Plane>(o.shape)) continue;
+    const Pose pose = obstacle_pose(o, time);
+    f(HalfSpace{pose.center, pose.turn.col(1)});
+  }
+}
+
+// Lifts free nodes of bodies at x [m] (nodes) that are below a hard plane onto it. Limits call this
+// between their sweeps, so that limits and planes both hold at the end. Returns how many it lifted.
+Index lift_onto_planes(const Model& model, double time, std::vector<Vec3>& x);
+
+}  // namespace sinew
