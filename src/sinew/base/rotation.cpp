@@ -11,13 +11,15 @@ Eigen::Quaterniond rotation_between(const Vec3& from, const Vec3& to) {
   const Vec3 a = from.normalized();
   const Vec3 b = to.normalized();
   const double c = b.dot(a);
-  if (c < -1.0 + 1e-12) {
-    // The axis of half a turn: perpendicular to a, and to the coordinate axis that is furthest
-    // from a.
-    int least = 0;
+  if (c < -0.999) {  // 1 + c has lost its digits; the sine has not
+    const Vec3 cross = a.cross(b);
+    const double sine = cross.norm();
+    int least = 0;  // the coordinate axis that is furthest from a
     a.cwiseAbs().minCoeff(&least);
-    const Vec3 axis = a.cross(Vec3::Unit(least)).normalized();
-    return Eigen::Quaterniond(0.0, axis.x(), axis.y(), axis.z());
+    const Vec3 axis = sine > 0.0 ? Vec3(cross / sine) : a.cross(Vec3::Unit(least)).normalized();
+    const double half = 0.5 * std::atan2(sine, c);
+    const Vec3 v = sine > 0.0 ? Vec3(axis * std::sin(half)) : axis;
+    return Eigen::Quaterniond(sine > 0.0 ? std::cos(half) : 0.0, v.x(), v.y(), v.z());
   }
   const double twice_half_cosine = std::sqrt((1.0 + c) * 2.0);
   const double scale = 1.0 / twice_half_cosine;
