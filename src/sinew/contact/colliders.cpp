@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
-#include <type_traits>
 #include <variant>
 
 #include "sinew/base/parallel.h"
@@ -187,19 +185,6 @@ std::vector<Eigen::AlignedBox3d> boxes_of_bodies(const Model& model, const std::
   return boxes;
 }
 
-// Whether some of the body's box may be within `reach` of the obstacle on the way. A plane has no
-// box: the ball around the body's box decides.
-template <SolidShape S>
-bool may_meet(const Moving<S>& m, const Eigen::AlignedBox3d& body, double reach) {
-  if (!body.intersects(m.box)) return false;
-  if (m.shape->farthest() < std::numeric_limits<double>::infinity()) return true;
-  const auto near = [&](const Pose& pose) {
-    const double distance = m.shape->surface(pose.own(body.center())).distance;
-    return distance - 0.5 * body.diagonal().norm() < reach;
-  };
-  return near(m.before) || near(m.after);
-}
-
 // Gives the edges numbers: those of both their triangles are the same.
 void number_edges(Skin& skin) {
   struct Side {
@@ -262,6 +247,23 @@ void build_skin(Model& model) {
   }
 }
 
+namespace {
+
+// Of a plane. Most nodes stay clear of it, on its free side and out of reach at both ends of the
+// step: two products tell. The others take the way of every shape, with the same result.
+void add_nodes(const Model& model, const Moving<shapes::Plane>& plane,
+               const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
+               std::vector<Contact>& out) {
+  for (const Index node : model.skin.nodes) {
+    const auto n = uz(node);
+    const double end = plane.after.own(to[n]).y();
+    if (end >= reach && end > 0.0 && plane.before.own(from[n]).y() > 0.0) continue;
+    if (model.inverse_mass[n] > 0.0) add_node(plane, node, from, to, reach, out);
+  }
+}
+
+}  // namespace
+
 void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
                             const std::vector<Vec3>& to, double t0, double t1,
                             const ContactReach& reach, std::vector<Contact>& out) {
@@ -269,24 +271,31 @@ void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
   std::vector<Eigen::AlignedBox3d> boxes;
   const auto find_with = [&]<SolidShape S>(const Obstacle& obstacle, const S& shape, Index index) {
     if (boxes.empty()) boxes = boxes_of_bodies(model, from, to);
-    const double within = std::is_same_v<S, shapes::Plane> ? reach.plane : reach.near;
-    const auto m = moving(obstacle, shape, index, t0, t1, within);
+    const auto m = moving(obstacle, shape, index, t0, t1, reach.near);
     for (std::size_t b = 0; b < boxes.size(); ++b) {
-      if (!may_meet(m, boxes[b], within)) continue;
+      if (!boxes[b].intersects(m.box)) continue;
       const Range own = model.skin.body_nodes[b];
       for (Index k = own.begin; k < own.end; ++k) {
         const Index node = model.skin.nodes[uz(k)];
         if (model.inverse_mass[uz(node)] == 0.0) continue;
         if (beyond(m.box, from[uz(node)], to[uz(node)]) != 0) continue;
-        add_node(m, node, from, to, within, out);
+        add_node(m, node, from, to, reach.near, out);
       }
-      add_triangles(model, m, b, boxes[b], from, to, within, out);
+      add_triangles(model, m, b, boxes[b], from, to, reach.near, out);
     }
+  };
+  const auto find_with_plane = [&](const Obstacle& obstacle, const shapes::Plane& shape,
+                                   Index index) {
+    add_nodes(model, moving(obstacle, shape, index, t0, t1, reach.plane), from, to, reach.plane,
+              out);
   };
   for (std::size_t o = 0; o < model.obstacles.size(); ++o) {
     const Obstacle& obstacle = model.obstacles[o];
     if (!obstacle.hard()) continue;
     std::visit(Overloaded{[](const shapes::Mesh&) {},  // a surface: find_surfaces() has it
+                          [&](const shapes::Plane& shape) {
+                            find_with_plane(obstacle, shape, static_cast<Index>(o));
+                          },
                           [&](const SolidShape auto& shape) {
                             find_with(obstacle, shape, static_cast<Index>(o));
                           }},
