@@ -1,4 +1,4 @@
-// Plain values as bytes, and back: what checkpoints and saved states are made of. Little-endian.
+// Plain values as bytes, and back, for checkpoints and saved states. Little-endian.
 #pragma once
 
 #include <bit>
@@ -14,7 +14,7 @@ namespace sinew {
 
 static_assert(std::endian::native == std::endian::little, "files of states are little-endian");
 
-// Reader and writer have the same functions, so that one list of members serves both.
+// The writer and the reader have the same functions, so one list of members serves both.
 class ByteWriter {
  public:
   explicit ByteWriter(std::string_view start) : bytes(start) {}
@@ -37,7 +37,7 @@ class ByteWriter {
   std::string bytes;
 };
 
-// After the first thing that is not there, everything else is not there either.
+// After the first value that is missing, every further read fails too.
 class ByteReader {
  public:
   explicit ByteReader(std::string_view bytes) : bytes_(bytes) {}
@@ -60,7 +60,7 @@ class ByteReader {
   void vec(Vector& v) {
     for (int a = 0; a < 3; ++a) value(v[a]);
   }
-  // How many things of at least `each` bytes follow.
+  // The number of items, of at least `each` bytes, that follow.
   std::size_t count(std::size_t each) {
     std::uint64_t n = 0;
     value(n);
@@ -85,7 +85,7 @@ class ByteReader {
   bool good_ = true;
 };
 
-// What closes a file of a state.
+// The checksum at the end of a checkpoint or a saved state.
 inline std::uint64_t digest(std::string_view bytes) {
   Hash h;
   h.bytes(bytes.data(), bytes.size());

@@ -1,5 +1,5 @@
-// A run's state on disk. Binary, little-endian; written to a temporary name and renamed, closed by
-// a hash of itself, so that a torn or foreign file is never taken for a checkpoint.
+// A run's state on disk. Binary, little-endian; written under a temporary name and renamed, with a
+// hash of its content at the end, so a damaged or foreign file is not read as a checkpoint.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,8 @@
 
 namespace sinew {
 
-// The same in memory. Throws what read_checkpoint throws; `name` stands for the file in messages.
+// The checkpoint as bytes in memory. Decoding throws the errors of read_checkpoint; `name` stands
+// for the file in messages.
 std::string encode_run(std::uint64_t model_hash, const RunState& run);
 RunState decode_run(std::string_view bytes, const std::string& name, std::uint64_t model_hash,
                     std::size_t nodes);
@@ -21,7 +22,7 @@ RunState decode_run(std::string_view bytes, const std::string& name, std::uint64
 void write_checkpoint(const std::filesystem::path& file, std::uint64_t model_hash,
                       const RunState& run);
 
-// Throws Error(input) where the file is no checkpoint, is damaged, or belongs to another model.
+// Throws Error(input) if the file is no checkpoint, is damaged, or belongs to another model.
 RunState read_checkpoint(const std::filesystem::path& file, const Model& model);
 
 }  // namespace sinew

@@ -14,25 +14,27 @@
 namespace sinew {
 namespace {
 
-// Long enough that the first of them, which finds the loads new, does not decide alone.
+// Several, because the first step after the loads set in is not typical.
 constexpr int trial_steps = 4;
 
-// Where the policy takes implicit steps to keep up with the clock: how close they come to
-// equilibrium [-]. docs/methods/implicit.md tells what that costs.
+// The residual [-] of implicit steps that are chosen to keep up with the clock.
+// docs/methods/implicit.md gives the effect.
 constexpr double pace_tolerance = 0.03;
-// What a step of backward Euler to that tolerance costs in explicit ones of single precision: 12 to
-// 17 on the liver of 36k tets, more where the material is stiff.
+// The cost of a step of backward Euler with that residual, in explicit steps in single precision:
+// 12 to 17 on the liver of 36k tets, more if the material is stiff.
 constexpr double steps_of_implicit = 25.0;
-// Wall time over simulated time from which on explicit steps are too slow: as a body deforms they
-// become shorter, and estimates of the stable step come on top of what a trial step takes.
+// The ratio of wall time to simulated time above which explicit steps are too slow. It is below 1,
+// because steps become shorter as a body deforms and because a trial step does not include the
+// estimates of the stable step.
 constexpr double most_load = 0.6;
 
-// What only Verlet's step does; null where the model has no such thing.
+// The feature of the model that only Verlet's step supports; null if there is none.
 const char* only_verlet_knows(const Model& model) {
   return model.bounces() ? "restitution" : nullptr;
 }
 
-// Puts bodies that start inside out where they are led back to: what counts is how they go on.
+// Puts tangled bodies at the rest shape to which inversion recovery leads them: the trial measures
+// the steps that follow.
 void recover(const Model& model, State& state) {
   put_at_rest_shape(model, find_tangled(model, find_low_tets(model, state.position)), state);
 }
@@ -40,7 +42,7 @@ void recover(const Model& model, State& state) {
 struct Trial {
   double newton = 0.0;    // Newton steps a frame
   double products = 0.0;  // Hessian products a frame
-  double work = 0.0;      // of a frame, in steps of Verlet in double precision
+  double work = 0.0;      // of a frame, in Verlet steps in double precision
 };
 
 class Policy {
@@ -65,12 +67,12 @@ class Policy {
     return choice;
   }
 
-  // As many steps a frame as the options and the stepper make of it.
+  // Steps in a frame with the length that the options and the stepper give.
   double steps_a_frame(const StepperChoice& choice) const {
     return options_.interval / options_.first_length(choice.first);
   }
 
-  // Nothing where a step finds no equilibrium.
+  // Nothing if a step finds no equilibrium.
   std::optional<Trial> try_steps(const StepperChoice& choice) const {
     Trial trial;
     State state = start_;
@@ -133,7 +135,7 @@ class Policy {
                     text, trial->newton, trial->products, work));
   }
 
-  // Of two trial steps the shorter wall time [s].
+  // The shortest wall time of three trial steps [s].
   double wall_of_a_step(const StepperChoice& choice) const {
     State state = start_;
     StepMemory memory = choice.memory;

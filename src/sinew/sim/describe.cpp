@@ -11,7 +11,7 @@
 namespace sinew::sim {
 namespace {
 
-// A table that takes the keys that are there.
+// A table that is given only those keys that have a value.
 class Table {
  public:
   explicit Table(const std::string& place) { out_ = blank(place, DocValue::Type::table); }
@@ -144,7 +144,7 @@ class Table {
   DocValue out_;
 };
 
-// What a key `mesh` says of arrays.
+// The value of the key `mesh` for a mesh given in arrays.
 std::string memory_name(const std::string& name) {
   return "memory:" + name;
 }

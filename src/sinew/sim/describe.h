@@ -1,5 +1,5 @@
-// Descriptions of the public interface as tables of a scene: what is built in code is read and
-// checked by the same functions as what stands in a file.
+// Descriptions of the public interface as tables of a scene, so that a scene built in code is read
+// and checked by the same functions as a scene file.
 #pragma once
 
 #include <sinew/scene_builder.h>
@@ -11,7 +11,7 @@
 
 namespace sinew::sim {
 
-// `place` is what errors name as the file: "SceneBuilder".
+// `place` takes the place of the file's name in errors: "SceneBuilder".
 DocValue table_of(const BodyDescription& body, const std::string& place);
 DocValue table_of(const PinDescription& pin, const std::string& place);
 DocValue table_of(const AttachmentDescription& attachment, const std::string& place);
@@ -29,14 +29,14 @@ void put_gravity(const Point& gravity, const std::string& place, DocValue& root)
 void put_text(std::string_view key, std::string_view text, const std::string& place,
               DocValue& root);
 
-// Puts `value` under the key of a table, in place of what is there.
+// Sets the key of a table to `value`, replacing an earlier value.
 void put(DocValue& table, std::string_view key, DocValue value);
-// [kind.name] of a scene; an error where the name is taken.
+// Adds [kind.name] to a scene; an error if the name is taken.
 void add_part(DocValue& root, std::string_view kind, const std::string& name, DocValue value,
               const std::string& place);
 
 // Keep the arrays of a description under the name that its table gives them. Error(input) for
-// arrays of different lengths, and for what only a file's reader would find.
+// arrays of different lengths, and for faults that otherwise only the reader of a file would find.
 void keep_arrays(const BodyDescription& body, const std::string& place, GivenMeshes& given);
 void keep_arrays(const ObstacleDescription& obstacle, const std::string& place, GivenMeshes& given);
 

@@ -14,9 +14,9 @@ namespace sinew::sim {
 namespace {
 
 constexpr double stiffness_of_disc = 4.0;  // K / (E r)
-// A grab at this share of the body's size from what it holds carries the body's weight.
+// A grab carries the body's weight when its target is this share of the body's size away.
 constexpr double reach = 0.1;
-// Of what the stiffest mode has per mass, what a grab may add to a node.
+// The largest stiffness per mass that a grab may add to a node, as a share of the stiffest mode's.
 constexpr double stable_share = 0.1;
 
 const Body& body_of(const Model& model, Index node) {
@@ -24,7 +24,7 @@ const Body& body_of(const Model& model, Index node) {
                        [&](const Body& b) { return b.nodes.contains(node); });
 }
 
-// Young's modulus that the tets of the body have on average, as if incompressible [Pa].
+// Mean Young's modulus of the body's tets [Pa], as if they were incompressible.
 double mean_young(const Model& model, const Body& body) {
   double sum = 0.0;
   for (Index t = body.tets.begin; t < body.tets.end; ++t)
@@ -67,7 +67,7 @@ GrabHandle World::grab(Index node, double radius, const Vec3& target) {
   const double sum = std::accumulate(patch.share.begin(), patch.share.end(), 0.0);
   for (double& share : patch.share) share /= sum;
   grab.target = target;
-  grab.stiffness.assign(grab.nodes.size(), 0.0);  // see hold_grabs
+  grab.stiffness.assign(grab.nodes.size(), 0.0);  // hold_grabs() sets it
   ++next_id_;
   grabs_.push_back(std::move(patch));
   controls_.grabs.push_back(std::move(grab));
@@ -76,8 +76,8 @@ GrabHandle World::grab(Index node, double radius, const Vec3& target) {
   return {serial_, grabs_.back().id};
 }
 
-// The stiffness of every grab: no node becomes so stiff that it shortens an explicit step. What
-// that changes in the energy of the springs is work put in, as where a target moves.
+// Sets the stiffness of every grab. No node becomes so stiff that explicit steps must be shorter.
+// The change of the springs' energy counts as work put in, as for a moved target.
 void World::hold_grabs() {
   const double before = grab_energy(*model_, controls_, run_.state);
   const double stable = run_.memory.stable_step;

@@ -1,4 +1,4 @@
-// Handles of a World: what they name.
+// Handles of a World, and the objects that they name.
 #include <fmt/format.h>
 
 #include <utility>
@@ -36,7 +36,7 @@ std::uint64_t id_named(const char* kind, std::string_view name, const Things& th
   refuse_name(kind, name, names_of(things));
 }
 
-// Index of the thing that a handle names.
+// Index of the object that a handle names.
 template <typename Things>
 std::size_t index_in(const char* kind, std::uint64_t serial, std::uint64_t simulation,
                      std::uint64_t id, const Things& things) {

@@ -1,4 +1,4 @@
-// The inside of a Simulation, for the rooms above: not installed.
+// Access to the World inside a Simulation, for higher rooms; not installed.
 #pragma once
 
 #include <sinew/simulation.h>
@@ -7,11 +7,11 @@
 
 namespace sinew::sim {
 
-// Of a Simulation that was not moved from; Error(usage) otherwise.
+// The World of the simulation; Error(usage) if the simulation was moved from.
 World& internals(Simulation& simulation);
 const World& internals(const Simulation& simulation);
 
-// From a scene that has been parsed. Throws what building it and choosing its steps throw.
+// From a parsed scene. Throws the errors of building it and of choosing its steps.
 Simulation simulate(const Scene& scene, WorldOptions options = {});
 
 }  // namespace sinew::sim

@@ -1,4 +1,4 @@
-// Paths that a host writes while a run goes on, and the rotations in them.
+// Paths that a host changes during a run, and their rotations.
 #pragma once
 
 #include <sinew/types.h>
@@ -15,16 +15,16 @@ inline Point point(const Vec3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-// The rotation vector of a rotation [rad]; of those that differ by whole turns, the one nearest to
-// `near`.
+// The rotation vector of a rotation [rad]. Of the vectors that differ by whole turns, the one
+// nearest to `near`.
 Vec3 rotation_vector(const Mat3& rotation, const Vec3& near);
 
-// The pin that moves the nodes of an obstacle that is a mesh; null for others.
+// The pin that moves the nodes of a mesh obstacle; null for other obstacles.
 Pin* pin_of(Model& model, const Obstacle& obstacle);
 
-// Writes the path anew: up to `start` [s] as it was, as far back as a step of `last_step` [s]
-// looks; then to `to`, which is a motion about `pivot`, at constant speed until `end` > start; then
-// still.
+// Replaces the keys of the path. The old motion is kept up to `start` [s], as far back as the last
+// step of length `last_step` [s] needs it; then the path leads to `to`, a motion about `pivot`, at
+// constant speed until `end` > start, and stays there.
 void lead_path(Path& path, const Vec3& pivot, const KeyFrame& to, double last_step, double start,
                double end);
 

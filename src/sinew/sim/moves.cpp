@@ -1,4 +1,4 @@
-// What moves in a World: gravity, obstacles, pins, and the tools of its owner.
+// Motion of gravity, obstacles, pins and the owner's tools in a World.
 #include "sinew/forces/obstacles.h"
 #include "sinew/sim/mover.h"
 #include "sinew/sim/world.h"
@@ -24,7 +24,7 @@ void World::set_path(std::size_t obstacle, const Path& path) {
   if (Pin* pin = pin_of(*model_, o)) pin->path = path;
 }
 
-// Begins the moves that wait: they take `span` [s].
+// Starts the waiting moves; each takes `span` [s].
 void World::start_moves(double span) {
   if (!moves_waiting_ || !(span > 0.0)) return;
   moves_waiting_ = false;
@@ -94,7 +94,7 @@ void World::move(PinHandle handle, const RigidMotion& motion) {
   moves_waiting_ = true;
 }
 
-// ---- tools: what a change of one does to its energy is work put in ----
+// ---- tools: a change of a tool's energy counts as work put in ----
 
 ObstacleHandle World::add_tool(const std::string& name, const Vec3& center, double radius,
                                double stiffness) {

@@ -1,4 +1,4 @@
-// What obstacles and bodies do to each other, soft obstacles and hard ones.
+// Forces and contacts between obstacles, soft or hard, and bodies.
 #pragma once
 
 #include <vector>
@@ -9,13 +9,14 @@
 
 namespace sinew {
 
-// Places nearer than this to a hard obstacle touch it: a thousandth of the longest edge of the
-// bodies' surfaces [m].
+// Points nearer than this to a hard obstacle touch it [m]: a thousandth of the longest edge of the
+// bodies' surfaces.
 double touching_distance(const Model& model);
 
-// By obstacle that is listed. Soft: as the positions are (forces/obstacles.h). Hard: the force is
-// the mean over the last step, depth that of the deepest place inside, and places count that touch.
-// `finder`: of the model; null if nothing can touch (sim/world.h).
+// The readings of the listed obstacles, in their order. Soft obstacles: at the current positions
+// (forces/obstacles.h). Hard obstacles: the mean force over the last step, the depth of the deepest
+// contact, and the number of contacts. `finder`: of the model; null if nothing can touch
+// (sim/world.h).
 std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
                                             ContactFinder* finder);
 

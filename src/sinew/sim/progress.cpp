@@ -1,4 +1,4 @@
-// How a World goes on in time, and what it tells of that.
+// The progress of a World in time, and its events.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,7 +16,7 @@
 namespace sinew::sim {
 namespace {
 
-constexpr double between_looks = 1.0 / 60.0;  // between states that are kept to go back to [s]
+constexpr double between_looks = 1.0 / 60.0;  // least time between states kept for a return [s]
 constexpr std::size_t most_events = 1000;
 
 }  // namespace
@@ -113,14 +113,14 @@ void World::write_checkpoint(const std::filesystem::path& file) const {
   sinew::write_checkpoint(file, model_hash_, run_);
 }
 
-// At the end of a frame, or of a step of a length that the host chose.
+// Called at the end of a frame, and after a step of a length that the host chose.
 void World::end_frame() {
   if (run_.state.time - good_.state.time < between_looks * (1.0 - 1e-9)) return;
   keep();
   look_for_inverted_tets();
 }
 
-// Tells when the first tets invert; the next time when some do after none was.
+// Adds an event when tets invert and none was inverted at the last check.
 void World::look_for_inverted_tets() {
   const std::int64_t count = count_inverted(*model_, run_.state.position);
   if (count > 0 && last_inverted_ == 0)

@@ -1,5 +1,5 @@
-// What is counted over a run, in one list: checkpoint, summary, JSON and live status derive from
-// it. A new counter is one line of the list (and what fills it).
+// The counters of a run in one list, from which checkpoint, summary, JSON and live status derive. A
+// new counter is one line of the list, and the code that computes its value.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ namespace sinew {
 
 // X(type, name, value after a step, key in summary.json, unit and meaning). In the third column c
 // is the value so far and r the StepReport; a lone c is counted elsewhere. A key may be a path
-// "table/key"; without a key it is not in summary.json.
+// "table/key"; a counter without a key is not in summary.json.
 //
 // clang-format off
 #define SINEW_RUN_COUNTERS(X)                                                                      \
@@ -40,7 +40,7 @@ struct RunCounters {
   SINEW_RUN_COUNTERS(SINEW_COUNTER_MEMBER)
 #undef SINEW_COUNTER_MEMBER
 
-  // Takes up what a step reports.
+  // Adds the report of a step.
   void add(const StepReport& r) {
 #define SINEW_COUNTER_ADD(type, name, after, key, meaning) \
   {                                                        \
@@ -54,12 +54,12 @@ struct RunCounters {
 
 struct CounterField {
   std::string_view name;     // as in RunCounters and in the live view's protocol
-  std::string_view key;      // in summary.json; empty: not there
+  std::string_view key;      // in summary.json; empty: not in it
   std::string_view meaning;  // with its unit
 };
 
-// Calls visit(field, value) for every counter in the list's order; the values may be written to
-// where `counters` is not const.
+// Calls visit(field, value) for every counter in the list's order. The value can be written unless
+// `counters` is const.
 template <typename Counters, typename Visit>
 void for_each_counter(Counters& counters, Visit&& visit) {
 #define SINEW_COUNTER_VISIT(type, name, after, key, meaning) \

@@ -1,4 +1,4 @@
-// Where a run stands: all that a checkpoint holds, besides the hash of the Model.
+// The progress of a run: everything that a checkpoint holds except the hash of the Model.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace sinew {
 
-// What the steps of one frame took: of the frame under way, or of the last one finished.
+// The work of the steps of one frame: the current one, or the last one finished.
 struct FrameWork : RunCounters {
   double seconds = 0.0;    // of wall time
   std::int64_t steps = 0;  // [1]
@@ -19,20 +19,20 @@ struct FrameWork : RunCounters {
 
 struct RunState : RunCounters {
   State state;
-  StepperKind stepper = StepperKind::automatic;  // the one that runs; automatic: to be chosen
-  std::string stepper_reason;                    // why it was chosen; empty: the scene names it
-  StepMemory memory;                             // of the stepper
-  std::int64_t frame = 0;                        // frames finished; frame 0 is the start
-  std::int64_t steps_left = 0;                   // steps to the end of the frame under way
-  double step = 0.0;                             // h now taken [s]
-  double target_step = 0.0;           // the longest h that may be taken [s]; 0: not begun
+  StepperKind stepper = StepperKind::automatic;  // in use; automatic: not chosen yet
+  std::string stepper_reason;         // reason for the choice; empty if the scene names it
+  StepMemory memory;                  // of the stepper
+  std::int64_t frame = 0;             // frames finished; frame 0 is the start
+  std::int64_t steps_left = 0;        // steps to the end of the current frame
+  double step = 0.0;                  // current step h [s]
+  double target_step = 0.0;           // the longest h that may be taken [s]; 0: not started
   double smallest_stable_step = 0.0;  // over the run [s]
   double start_energy = 0.0;          // total at the start [J]
-  double wall_seconds = 0.0;          // spent so far
+  double wall_seconds = 0.0;          // wall time spent so far
   std::vector<double> frame_times;    // of the frames written [s]
   FrameWork work;
   std::int64_t frames_cut_short = 0;  // frames with steps that budget_ms ended
-  std::vector<double> frame_seconds;  // FrameWork::seconds of every frame, where there is a budget
+  std::vector<double> frame_seconds;  // FrameWork::seconds of every frame, if there is a budget
 };
 
 }  // namespace sinew

@@ -1,5 +1,5 @@
-// What a World keeps of itself in memory: the run as a checkpoint has it, and what the host has
-// hold of.
+// The state of a World in memory: the run as in a checkpoint, and the obstacles, pins and grabs
+// that the host moves.
 #include <algorithm>
 #include <cstring>
 #include <string>
@@ -85,7 +85,7 @@ std::string World::save() const {
   return std::move(w.bytes);
 }
 
-// Everything is read before anything of it is put in place.
+// Reads everything before it changes the World.
 void World::restore(const std::string& bytes) {
   const Busy busy(*this);
   std::string_view view(bytes);

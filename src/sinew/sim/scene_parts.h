@@ -1,4 +1,4 @@
-// What a SceneBuilder holds.
+// The content of a SceneBuilder.
 #pragma once
 
 #include <sinew/scene_builder.h>

@@ -1,4 +1,4 @@
-// The public Simulation: checks what comes from outside and hands it to its World.
+// The public Simulation: checks the caller's values and passes them to its World.
 #include <sinew/simulation.h>
 
 #include <fmt/format.h>
@@ -30,7 +30,7 @@ constexpr double largest_turn = 1e6;        // [rad]
   throw Error(ErrorKind::usage, std::move(message), std::move(remedy));
 }
 
-// A value that a call is given: three numbers of at most `most`.
+// Checks an argument: three finite numbers, none beyond `most` in magnitude.
 Vec3 checked(const Point& p, double most, const char* what, const char* unit) {
   for (const double x : p)
     if (!(std::abs(x) <= most))
@@ -74,7 +74,7 @@ double checked_seconds(double seconds, double most, bool may_be_zero, const char
          may_be_zero ? "call it several times for a longer time" : "take advance() for a time");
 }
 
-// Positions and the like as the outside sees them: both are three doubles.
+// Positions and other vectors are shown to the caller as Points: both are three doubles.
 static_assert(sizeof(Vec3) == sizeof(Point) && alignof(Vec3) == alignof(Point));
 std::span<const Point> points(const std::vector<Vec3>& values, Index count) {
   return {reinterpret_cast<const Point*>(values.data()), uz(count)};
@@ -94,7 +94,7 @@ std::vector<std::string> names(const Parts& parts) {
 
 }  // namespace
 
-// ---- making ----
+// ---- construction ----
 
 Simulation Simulation::from_file(const std::filesystem::path& file,
                                  const SimulationOptions& options) {
@@ -132,7 +132,7 @@ sim::World& Simulation::any_world() const {
          "assign a new one to it, or use the one it was moved to");
 }
 
-// For what only reads; what changes something locks by itself.
+// For calls that only read. Calls that change the World lock it themselves.
 sim::World& Simulation::world() const {
   any_world().require_idle();
   return *world_;
@@ -334,7 +334,7 @@ std::vector<GrabHandle> Simulation::grabs() const {
   return world().grabs();
 }
 
-// ---- what else may change ----
+// ---- materials and gravity ----
 
 MaterialHandle Simulation::material(std::string_view body, std::string_view region) const {
   return world().material(body, region);
@@ -361,7 +361,7 @@ std::string Simulation::hash() const {
   return hex(world().state().hash());
 }
 
-// ---- what happened ----
+// ---- events and warnings ----
 
 std::vector<Event> Simulation::take_events() {
   return any_world().take_events();
@@ -370,7 +370,7 @@ std::span<const std::string> Simulation::warnings() const {
   return world().warnings();
 }
 
-// ---- the inside ----
+// ---- access for higher rooms ----
 
 namespace sim {
 

@@ -14,7 +14,7 @@ double mean_modulus(const Model& model, const Body& body) {
   return sum / body.rest_volume;
 }
 
-// The motion of a body as a whole: that of a rigid one with its momentum and angular momentum.
+// The rigid motion of a body: that of a rigid body with the same momentum and angular momentum.
 struct Motion {
   Vec3 center = Vec3::Zero();    // [m]
   Vec3 velocity = Vec3::Zero();  // [m/s]
@@ -47,7 +47,7 @@ Motion motion_of(const Model& model, const Body& body, const State& state) {
   return m;
 }
 
-// Nodes in front of those of obstacles that are meshes.
+// The number of nodes before those of mesh obstacles.
 Index own_nodes(const Model& model) {
   Index count = model.node_count();
   for (const Obstacle& o : model.obstacles) count -= o.nodes().size();
@@ -62,8 +62,8 @@ const Obstacle* obstacle_named(const Model& model, const std::string& name) {
   return found == model.obstacles.end() ? nullptr : &*found;
 }
 
-// Nodes of obstacles that are meshes come last: those that stay keep their places, the others are
-// where their paths begin.
+// The nodes of mesh obstacles come last. Those of obstacles that stay keep their state; those of
+// others are at the start of their paths.
 State transfer_state(const Model& before, const State& old, const Model& after,
                      const std::string& replaced) {
   State s = initial_state(after);

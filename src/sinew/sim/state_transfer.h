@@ -1,4 +1,4 @@
-// What a state keeps when another model of the same bodies takes the place of its own.
+// The parts of a state that stay when another model of the same bodies replaces its own.
 #pragma once
 
 #include <string>
@@ -7,18 +7,19 @@
 
 namespace sinew {
 
-// The state as it goes on with `after`, whose bodies, pins and attachments have the same nodes.
-// Obstacles may have come or gone; the one named `replaced` starts anew. Contacts start cold.
+// The state for `after`, whose bodies, pins and attachments have the same nodes. Obstacles may have
+// been added or removed; the one named `replaced` starts anew. Contacts have no warm start.
 State transfer_state(const Model& before, const State& old, const Model& after,
                      const std::string& replaced);
 
-// Takes from every body that becomes softer, by a ratio r < 1 of its mean shear modulus, the share
-// sqrt(r) of the speeds at which it deforms; how it moves and turns as a whole stays. A deformed
-// body that is made a million times stiffer swings at a thousand times the speed, and soft again it
-// would be torn apart by it: this way its swings keep their size. Models with the same nodes.
+// Reduces the deformation speeds of every body that becomes softer, by the factor sqrt(r), with r
+// the ratio of its mean shear moduli, below 1. Its rigid motion does not change. The amplitude of
+// its vibration is then the same: a deformed body made a million times stiffer vibrates at a
+// thousand times the speed, and would be torn apart at that speed when it is soft again. The models
+// have the same nodes.
 void calm_softened_bodies(const Model& before, const Model& after, State& state);
 
-// Null if there is none of that name.
+// Null if there is no obstacle of that name.
 const Obstacle* obstacle_named(const Model& model, const std::string& name);
 
 }  // namespace sinew

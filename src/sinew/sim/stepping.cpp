@@ -12,14 +12,14 @@
 namespace sinew {
 namespace {
 
-// What a frame's end and a time that is asked for may differ by and be the same, as a share of a
-// frame.
+// Largest difference between a requested time and the end of a frame that counts as equal, as a
+// share of a frame.
 constexpr double same_time = 1e-9;
 
-// The stable step is estimated: this much above its share is not worth a shorter step.
+// The stable step is an estimate: a step up to this factor above its share is not shortened.
 constexpr double estimate_slack = 1.03;
 
-// h with three digits, rounded down: what a user can type and is still stable.
+// h rounded down to three digits, so that a user can type it and it is still stable.
 double typed_step(double h) {
   const double unit = std::pow(10.0, std::floor(std::log10(h)) - 2.0);
   return std::floor(h / unit) * unit;
@@ -57,10 +57,10 @@ bool changes_with_time(const Model& model) {
 Stepping::Stepping(const SteppingOptions& options, const Model& model, const Controls& controls,
                    RunState& run)
     : model_(model), options_(options) {
-  const bool goes_on = run.target_step > 0.0;  // from a checkpoint
+  const bool goes_on = run.target_step > 0.0;  // a resumed run
   const StepperKind kind = goes_on ? run.stepper : options.stepper;
   const bool rest = kind == StepperKind::rest && options.pace == Pace::any;
-  if (rest) options_.dt.reset();  // a rest state has no step of its own
+  if (rest) options_.dt.reset();  // rest states have no step length
   if (options_.dt) options_.interval = std::max(options_.interval, options_.given());
   frame_interval_ = options_.interval;
   if (rest && !changes_with_time(model) && options_.duration < no_limit) {
@@ -94,7 +94,8 @@ double Stepping::frame_end(std::int64_t frame) const {
 
 void Stepping::begin_frame(RunState& run) const {
   const double end = frame_end(run.frame + 1);
-  // A frame ends with the given step nearest to its time, counted from the start: nothing adds up.
+  // A frame ends with the given step nearest to its time, counted from the start, so that rounding
+  // does not accumulate.
   plan(run, end, automatic() ? 0 : std::max<std::int64_t>(1, std::llround(end / options_.given())));
 }
 
@@ -105,7 +106,8 @@ void Stepping::finish_frame(RunState& run) const {
   run.frames_cut_short += run.work.steps_cut_short > 0 ? 1 : 0;
 }
 
-// Steps to `end`: those given up to the number `given_steps` from the start, or of equal length.
+// Plans steps to `end`: with a given dt those up to number `given_steps` from the start, otherwise
+// of equal length.
 void Stepping::plan(RunState& run, double end, std::int64_t given_steps) const {
   run.work = {};
   double span = end - run.state.time;
@@ -120,7 +122,7 @@ void Stepping::plan(RunState& run, double end, std::int64_t given_steps) const {
   run.step = span / static_cast<double>(run.steps_left);
 }
 
-// Takes at most `step` for the rest of the frame.
+// Shortens the steps of the rest of the frame to at most `step`.
 void Stepping::shorten(RunState& run, double step) const {
   ++run.step_reductions;
   run.target_step = step;
@@ -129,7 +131,7 @@ void Stepping::shorten(RunState& run, double step) const {
   run.step = span / static_cast<double>(run.steps_left);
 }
 
-// A step that Sinew chose keeps its margin to the stable one; a given one may use all of it.
+// A step chosen by Sinew keeps its margin to the stable step; a given step may use all of it.
 bool Stepping::too_long(const RunState& run, double stable, double slack) const {
   if (automatic() || run.target_step < options_.given()) {
     return run.step > slack * options_.safety * stable;
@@ -137,7 +139,7 @@ bool Stepping::too_long(const RunState& run, double stable, double slack) const 
   return run.step > stable && !options_.allow_unstable;
 }
 
-// Lets the length of the steps follow the stable one, where that was estimated anew.
+// Adapts the length of the steps to the stable step if it was estimated anew.
 void Stepping::watch(const Controls& controls, RunState& run) {
   const auto stable = stepper_->watch(run.step, controls, run.state, run.memory);
   if (!stable) return;
@@ -145,7 +147,7 @@ void Stepping::watch(const Controls& controls, RunState& run) {
   const double longest = automatic() ? options_.interval : options_.given();
   const double wish = std::min(options_.safety * *stable, longest);
   if (too_long(run, *stable, estimate_slack)) {
-    // The margin is being eaten up: shorten the rest of the frame.
+    // The margin is used up: shorten the rest of the frame.
     shorten(run, wish);
   } else if (wish > 1.25 * run.target_step || (wish == longest && wish > run.target_step)) {
     run.target_step = wish;  // from the next frame on
@@ -153,12 +155,12 @@ void Stepping::watch(const Controls& controls, RunState& run) {
   }
 }
 
-// False: `stop` was set before the step was done.
+// Returns false if `stop` was set before the step was done.
 bool Stepping::one_step(const Controls& controls, RunState& run, const std::atomic<bool>* stop) {
   const Clock::time_point start = Clock::now();
   watch(controls, run);
   Interrupt interrupt{{}, stop};
-  if (options_.budget) {  // an equal share of what is left
+  if (options_.budget) {  // an equal share of the remaining time
     const std::chrono::duration<double> share((*options_.budget - run.work.seconds) /
                                               static_cast<double>(run.steps_left));
     interrupt.deadline = start + std::chrono::duration_cast<Clock::duration>(share);
@@ -169,7 +171,7 @@ bool Stepping::one_step(const Controls& controls, RunState& run, const std::atom
   ++run.work.steps;
   run.work.seconds += seconds_since(start);
   if (report.stopped) {
-    run.steps_left = 0;  // the rest of the frame is planned anew where the run goes on
+    run.steps_left = 0;  // the rest of the frame is planned anew when the run continues
     return false;
   }
   --run.steps_left;
@@ -180,7 +182,7 @@ bool Stepping::one_step(const Controls& controls, RunState& run, const std::atom
   return true;
 }
 
-// The steps that are planned. False: `stop` was set before they were done.
+// Takes the planned steps. Returns false if `stop` was set before they were done.
 bool Stepping::steps(const Controls& controls, RunState& run, const std::atomic<bool>* stop) {
   while (run.steps_left > 0) {
     if (!one_step(controls, run, stop)) return false;
@@ -218,7 +220,7 @@ Stepping::Progress Stepping::advance_to(const Controls& controls, RunState& run,
     return Progress::arrived;
   }
   const bool done = steps(controls, run, stop);
-  run.steps_left = 0;  // the next frame or part of one is planned from where this one got to
+  run.steps_left = 0;  // the next frame or part of one is planned from the current time
   if (!done) return Progress::stopped;
   if (automatic()) run.state.time = end;
   return Progress::arrived;

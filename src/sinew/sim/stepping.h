@@ -1,7 +1,7 @@
-// Cuts time into frames and frames into steps: fixed ones, or as the stable step asks; or rest
-// states, one a frame. Knows no stepper but by its interface (solver/stepper.h). Everything that
-// decides the next step is in RunState, so that a run can be cut anywhere and go on to the same
-// bits.
+// Divides time into frames and frames into steps: of a given length, or as long as the stable step
+// allows; or rest states, one a frame. Steppers are used only through their interface
+// (solver/stepper.h). RunState holds everything that decides the next step, so that a run can be
+// interrupted at any step and continue with the same bits.
 #pragma once
 
 #include <atomic>
@@ -16,8 +16,8 @@ namespace sinew {
 
 class Stepping {
  public:
-  // Chooses the stepper (sim/choose_stepper.h) unless `run` says which one it goes on with. Throws
-  // Error(unstable) where the given step is above the stable one and the options do not allow that.
+  // Chooses the stepper (sim/choose_stepper.h) unless `run` names the one in use. Throws
+  // Error(unstable) if the given step is above the stable one and the options do not allow that.
   // The model must outlive the object.
   Stepping(const SteppingOptions& options, const Model& model, const Controls& controls,
            RunState& run);
@@ -25,7 +25,7 @@ class Stepping {
       : Stepping(stepping_options(scene), model, controls, run) {}
 
   // All of these throw Error(diverged), see verlet_step and StaticSolver::solve. `stop` ends them
-  // after the step under way, and the search for a rest state before it is found.
+  // after the current step, and ends the search for a rest state before it is found.
 
   // Takes the next step. Returns true when the frame is finished.
   bool step(const Controls& controls, RunState& run, const std::atomic<bool>* stop = nullptr);
@@ -33,28 +33,28 @@ class Stepping {
   // Steps to the end of the frame. Returns true when that is reached.
   bool advance_frame(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
 
-  // Towards `end` [s]: to the end of the frame under way where that is not later, or else to `end`
-  // itself (with a given dt: the step nearest to it), which may be within a frame.
+  // Steps towards `end` [s]: to the end of the current frame if that is not later, otherwise to
+  // `end` itself (with a given dt: the nearest step), which may be within a frame.
   enum class Progress { arrived, frame, stopped };
   Progress advance_to(const Controls& controls, RunState& run, double end,
                       const std::atomic<bool>* stop);
 
-  // Takes one step of h [s] > 0, wherever frames end.
+  // Takes one step of h [s] > 0, regardless of the ends of frames.
   void take_step(const Controls& controls, RunState& run, double h);
 
-  // Throws Error(unstable) where a step may not be as long as h [s].
+  // Throws Error(unstable) if a step must not be as long as h [s].
   void require_stable(const Controls& controls, RunState& run, double h);
 
-  // How long the step is that step() takes next [s].
+  // The length of the step that step() takes next [s].
   double prepare(const Controls& controls, RunState& run);
 
-  // The longest stable step from here [s]; infinity: any.
+  // The longest stable step now [s]; infinity: any.
   double longest_step(const RunState& run) const { return stepper_->stable_step(run.memory); }
 
-  // Makes the run go on from its state's time, which something else has set.
+  // Continues the run at the time of its state, which was set from outside.
   void resume_at(RunState& run) const;
 
-  // Frames up to the end; the largest number where there is none.
+  // Number of frames up to the end; the largest integer if there is no end.
   std::int64_t frame_count() const { return frames_; }
   // Between the ends of frames [s], also where rest states need only one.
   double frame_interval() const { return frame_interval_; }

@@ -18,7 +18,7 @@
 namespace sinew::sim {
 namespace {
 
-// Tells the simulations of a process apart, so that a handle is known by its own.
+// Numbers the simulations of a process, so that a handle belongs to one of them.
 std::uint64_t next_serial() {
   static std::atomic<std::uint64_t> serial{0};
   return ++serial;
@@ -53,7 +53,7 @@ World::~World() = default;
 
 // ---- building ----
 
-// No simulation comes to an end by itself where its owner does not say so.
+// Without the owner's options a simulation has no end.
 SteppingOptions World::options_of(const Scene& scene) const {
   if (options_.stepping) return options_.stepping(scene);
   SteppingOptions out = stepping_options(scene);
@@ -88,7 +88,7 @@ void World::take(Built built) {
   note_stepper(before);
 }
 
-// What is read of the model.
+// Takes the bodies and the surface from the model, and keeps the run.
 void World::remember() {
   bodies_.clear();
   for (const Body& b : model_->bodies) {
@@ -157,8 +157,8 @@ Scene World::current_scene() const {
   return changed(std::move(document), source_.scene.given).scene;
 }
 
-// The model of another source of the same bodies and pins. Grabs and tools take no part in the
-// choice of the steps: how stiff they may be follows from it.
+// Replaces the model by that of another source of the same bodies and pins. Grabs and tools do not
+// take part in the choice of the steps, because their stiffness is bounded by it.
 void World::rebuild(Source source, const std::string& replaced, Steps steps) {
   Built b = build(std::move(source));
   for (Obstacle& o : b.model->obstacles) {
@@ -247,7 +247,7 @@ void World::change(MaterialHandle handle, const MaterialDescription& description
   DocValue* table = document.find("body")->find(part.body);
   if (!part.region.empty()) table = table->find("region")->find(part.region);
   DocValue values = table_of(description, "change(material)");
-  if (!description.tissue.empty()) {  // its values are those of the tissue from here on
+  if (!description.tissue.empty()) {  // from here on it has the tissue's values
     std::erase_if(table->entries, [](const DocEntry& entry) {
       return entry.key == "young" || entry.key == "poisson" || entry.key == "density";
     });
@@ -275,9 +275,9 @@ void World::forget_steps() {
       [&] { rebuild(changed(std::move(document), source_.scene.given), "", Steps::chosen); });
 }
 
-// ---- other steps of the same model ----
+// ---- new steps for the same model ----
 
-// `state` goes on here, with nothing held yet.
+// Continues from `state`. Steps are chosen without grabs, which then get their stiffness.
 void World::rechoose(const State& state) {
   RunState run;
   run.state = state;

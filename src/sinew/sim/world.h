@@ -1,6 +1,6 @@
-// What a Simulation (include/sinew/simulation.h) holds: the scene, its Model, where the run stands,
-// and what its owner has hold of. The command line, the live view and the studies step it through
-// sim/internals.h. Values that come from a host are checked in simulation.cpp.
+// The content of a Simulation (include/sinew/simulation.h): the scene, its Model, the progress of
+// the run, and the obstacles, pins and grabs that the owner moves. The command line, the live view
+// and the studies step it through sim/internals.h. Values of a host are checked in simulation.cpp.
 #pragma once
 
 #include <sinew/simulation.h>
@@ -28,7 +28,7 @@
 
 namespace sinew::sim {
 
-// A scene, the tree it was read from, and what it was read as.
+// A scene, and the document that it was read from.
 struct Source {
   Scene scene;
   DocValue document;
@@ -36,10 +36,10 @@ struct Source {
 
 struct WorldOptions {
   int threads = 0;  // as SimulationOptions::threads
-  // How a scene is stepped; asked again whenever steps are chosen. Empty: as the scene says,
+  // The options of a scene's steps, requested whenever steps are chosen. Empty: as in the scene,
   // without an end.
   std::function<SteppingOptions(const Scene&)> stepping = {};
-  // Where the run starts; asked once, when the Model stands. Empty: where the scene starts.
+  // The start of the run, requested once the Model is built. Empty: the start of the scene.
   std::function<RunState(const Model&, const BuildReport&)> start = {};
 };
 
@@ -51,27 +51,28 @@ class World {
   static World& of(const Simulation& simulation);
   static Simulation simulate(Source source, WorldOptions options);
 
-  // Error(usage) for a call while another thread is within step() or advance().
+  // Error(usage) if another thread is within step() or advance().
   void require_idle() const;
 
   // ---- time (progress.cpp) ----
-  // Where a step diverges, the run is put back to where keep() was last called, and Error(diverged)
-  // goes on to the caller.
+  // If a step diverges, the run returns to the state of the last keep(), and Error(diverged) goes
+  // on to the caller.
 
-  // Takes the next step. True: it ends a frame.
+  // Takes the next step. Returns true if it ends a frame.
   bool step();
   void step(double dt);
   bool advance(double seconds);
   void interrupt() noexcept { stop_.store(true); }
 
-  // Takes steps to the end of the frame under way, one at least; none after `deadline`, and none
-  // once `stop` is set, which also ends a search for a rest state. True: the end is reached.
+  // Takes steps to the end of the current frame, at least one; none after `deadline`, and none
+  // after `stop` is set, which also ends a search for a rest state. Returns true if the end is
+  // reached.
   bool advance_frame(const std::atomic<bool>* stop,
                      Clock::time_point deadline = Clock::time_point::max());
-  // Runs that diverge are put back to here. advance() and the like call it at the end of frames;
-  // who calls advance_frame() calls it as well.
+  // Keeps the state to which a run that diverges returns. advance() and the like call it at the end
+  // of frames; callers of advance_frame() call it themselves.
   void keep();
-  // Adds the frame that has ended to the run's log: its time, and the peaks of all frames.
+  // Adds the finished frame to the run's log: its time, and the peaks over all frames.
   void log_frame();
   // Throws Error(io).
   void write_checkpoint(const std::filesystem::path& file) const;
@@ -85,7 +86,7 @@ class World {
   std::size_t index_of(PinHandle handle) const;
   std::size_t index_of(GrabHandle handle) const;
   std::size_t index_of(MaterialHandle handle) const;
-  // What `handle` names in the world that this one went on from.
+  // The handle here of the object that `handle` names in the world that this one went on from.
   template <typename Kind>
   Handle<Kind> counterpart(Handle<Kind> handle) const {
     return {serial_, handle.id_};
@@ -94,46 +95,48 @@ class World {
   // ---- changes that build the model anew (world.cpp) ----
   ObstacleHandle add(const ObstacleDescription& description);
   void change(ObstacleHandle handle, const ObstacleDescription& description);
-  void remove(ObstacleHandle handle);  // a tool without building
+  void remove(ObstacleHandle handle);  // a tool: without building a model
   void change(MaterialHandle handle, const MaterialDescription& description);
-  // Other values of the same bodies, pins and obstacles, as overrides of --set; steps are chosen
-  // anew and counters start again.
+  // Other values of the same bodies, pins and obstacles, as overrides like those of --set. Steps
+  // are chosen anew and counters start again.
   void change(const std::vector<std::string>& overrides);
-  // The scene says nothing of its steps any more.
+  // Removes the keys of the steps from the scene.
   void forget_steps();
-  // Back to the start of the scene with the values as they are. Nothing is held, no tool is there,
-  // and what was moved follows the scene's paths again.
+  // Returns to the start of the scene with the current values. Grabs and tools are removed, and
+  // moved objects follow the scene's paths again.
   void reset();
 
-  // Chooses the steps anew, without another model, and goes on from here; counters start again.
+  // Chooses the steps anew without another model and continues; counters start again.
   void choose_steps();
-  // Goes on from where another world of the same nodes and parts is, with what it holds: grabs and
-  // tools. Of a new world, which is of no use where this throws.
+  // Continues from the state of another world of the same nodes and parts, with its grabs and
+  // tools. For a new world; if this throws, the world must not be used.
   void go_on_from(const World& other);
 
-  // ---- what moves (moves.cpp) ----
+  // ---- motion (moves.cpp) ----
   void set_gravity(const Vec3& gravity);
-  // To the pose over the next step or advance, at once, or over the next `seconds` > 0.
+  // Moves to the pose: over the next step or advance (move), at once (place), or over the next
+  // `seconds` > 0 (lead).
   void move(ObstacleHandle handle, const Pose& pose);
   void place(ObstacleHandle handle, const Pose& pose);
   void lead(ObstacleHandle handle, const Pose& pose, double seconds);
   void move(PinHandle handle, const RigidMotion& motion);
-  // A tool is a soft sphere that belongs to the owner, not to the scene. It stands behind the
-  // scene's obstacles, comes and goes without another model, and stays when the model changes.
+  // A tool is a soft sphere that belongs to the owner, not to the scene. It follows the scene's
+  // obstacles in the model, is added and removed without another model, and stays when the model
+  // changes.
   ObstacleHandle add_tool(const std::string& name, const Vec3& center, double radius,
                           double stiffness);
   // Gives a tool another radius [m] and stiffness [N/m3], at once.
   void reshape(ObstacleHandle handle, double radius, double stiffness);
 
   // ---- grabs (grabs.cpp) ----
-  // Holds the nodes of the node's body within `radius` [m] of it, as a hand at `target` that pulls
-  // nothing yet.
+  // Holds the nodes of the node's body within `radius` [m] of it by springs to `target`, which do
+  // not pull yet.
   GrabHandle grab(Index node, double radius, const Vec3& target);
   void move(GrabHandle handle, const Vec3& target);
   void release(GrabHandle handle);
   std::vector<GrabHandle> grabs() const;
   Vec3 target(GrabHandle handle) const;
-  Vec3 held_at(GrabHandle handle) const;  // where `target` would pull nothing [m]
+  Vec3 held_at(GrabHandle handle) const;  // the target at which it would not pull [m]
   Vec3 pull(GrabHandle handle) const;     // on the tissue [N]
 
   // ---- states (saved_state.cpp) ----
@@ -143,11 +146,11 @@ class World {
   std::vector<Event> take_events();
 
   const Scene& scene() const { return source_.scene; }
-  // The scene with gravity as it is now.
+  // The scene with the current gravity.
   Scene current_scene() const;
   const BuildReport& report() const { return report_; }
   const Model& model() const { return *model_; }
-  // The run; its owner keeps frame_times, start_energy and wall_seconds.
+  // The run; its owner maintains frame_times, start_energy and wall_seconds.
   RunState& run() { return run_; }
   const RunState& run() const { return run_; }
   const State& state() const { return run_.state; }
@@ -159,25 +162,25 @@ class World {
   const Controls& controls() const { return controls_; }
   Index body_nodes() const { return model_->body_node_count(); }
 
-  // ---- readings, at the positions as they are (readings.cpp) ----
+  // ---- readings, at the current positions (world_readings.cpp) ----
   const std::vector<Vec3>& forces();
   Wrench wrench(std::size_t obstacle, const Vec3& about);
   Wrench pin_wrench(std::size_t pin, const Vec3& about);
   void contacts(std::size_t obstacle, std::vector<ContactPoint>& out);
   double depth(std::size_t obstacle);
-  // Null where nothing but the ground and soft obstacles can touch.
+  // Null if nothing but soft obstacles can touch.
   ContactFinder* finder();
 
  private:
-  // Something that the owner has moved, or may: its path is written in front of every step.
+  // An object that the owner may move: its path is written before every step.
   struct Mover {
     std::uint64_t id = 0;
     std::string name;
-    bool held = false;           // by the owner: its path is no longer the scene's
-    std::optional<KeyFrame> to;  // where the next step or advance takes it
-    bool tool = false;           // of the owner alone, behind the scene's obstacles
+    bool held = false;           // by the owner: it has left the scene's path
+    std::optional<KeyFrame> to;  // target of the next step or advance
+    bool tool = false;           // of the owner alone, after the scene's obstacles
   };
-  struct Patch {  // what a grab holds
+  struct Patch {  // the nodes of a grab
     std::uint64_t id = 0;
     double radius = 0.0;        // [m]
     std::vector<double> share;  // of the grab's stiffness (nodes), sum 1
@@ -185,8 +188,8 @@ class World {
   struct Part {  // a body or region that has a material
     std::string body, region;
   };
-  // A model that stands, with what belongs to it, before it takes the place of the one before: what
-  // cannot be built leaves the simulation as it was.
+  // A finished model with everything that belongs to it, before it replaces the current one. If it
+  // cannot be built, the simulation does not change.
   struct Built {
     Source source;
     BuildReport report;
@@ -196,7 +199,7 @@ class World {
     RunState run;
     std::vector<Mover> obstacles;
   };
-  enum class Steps { kept, chosen };  // of a model that goes on
+  enum class Steps { kept, chosen };  // when the model is replaced
   // One call at a time changes a simulation.
   class Busy {
    public:
@@ -220,7 +223,7 @@ class World {
   void rechoose(const State& state);
   Source changed(DocValue document, GivenMeshes given) const;
   void remember();
-  // Runs `steps`, and puts the run back where it diverges.
+  // Runs `steps`, and restores the run if they diverge.
   template <typename F>
   void guarded(const F& steps);
   void end_frame();
@@ -244,26 +247,26 @@ class World {
   std::unique_ptr<Stepping> stepping_;
   Controls controls_;
   RunState run_;
-  RunState good_;       // where a run that diverges is put back to
-  double clock_ = 0.0;  // to where advance() was asked for [s]
+  RunState good_;       // the run returns to it when it diverges
+  double clock_ = 0.0;  // time up to which advance() was requested [s]
   std::vector<std::string> warnings_;
   std::vector<BodyInfo> bodies_;
   std::vector<Triangle> surface_;
 
   std::uint64_t next_id_ = 1;
   std::vector<Mover> obstacles_;  // (Model::obstacles: the scene's, the ground, then tools)
-  std::vector<Mover> pins_;       // the scene's: (the first of Model::pins)
+  std::vector<Mover> pins_;       // the scene's (the first of Model::pins)
   std::vector<Patch> grabs_;      // (Controls::grabs)
   std::vector<Part> parts_;
 
   bool moves_waiting_ = false;
-  std::int64_t last_inverted_ = 0;  // tets, when last counted
+  std::int64_t last_inverted_ = 0;  // tets, at the last check
 
   std::deque<Event> events_;
   std::atomic<bool> stop_ = false;
   std::atomic<bool> busy_ = false;
 
-  // Readings, of the state numbered by changes_.
+  // Readings, of the state with the number changes_.
   std::uint64_t changes_ = 1, forces_of_ = 0, contacts_of_ = 0;
   std::unique_ptr<ForceEvaluator> evaluator_;
   std::vector<Vec3> forces_;

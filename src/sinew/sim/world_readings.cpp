@@ -1,4 +1,4 @@
-// What a World measures of its state.
+// Measurements of a World's state.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@
 namespace sinew::sim {
 namespace {
 
-// Forces at places, as one.
+// Forces at points, summed to one wrench.
 struct Sum {
   Vec3 about, force = Vec3::Zero(), torque = Vec3::Zero();
 
@@ -88,7 +88,7 @@ ContactFinder* World::finder() {
   return finder_.get();
 }
 
-// Of hard obstacles.
+// Finds the contacts of hard obstacles at the current positions.
 void World::find_contacts_now() {
   if (contacts_of_ == changes_) return;
   contacts_.clear();
