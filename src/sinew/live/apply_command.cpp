@@ -1,4 +1,4 @@
-// What a session does with a command.
+// Applies commands to a session.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -27,7 +27,7 @@ void require_key(const std::array<std::string_view, N>& keys, const std::string&
               fmt::format("one of {}", fmt::join(keys, ", ")));
 }
 
-// A value goes into the scene's document as TOML: a number or a word, and nothing else.
+// A value becomes part of the scene's document as TOML: it must be a number or a word.
 void require_plain(const std::string& value) {
   const bool plain = !value.empty() && value.size() <= 40 &&
                      value.find_first_not_of(
@@ -62,7 +62,7 @@ void Session::act(const Reset&) {
   changed();
 }
 
-// Nothing of the scene before is touched until the new one stands.
+// The current scene stays unchanged until the new one is built.
 void Session::act(const Load& c) {
   const bool behind = std::exchange(fell_behind_, false);
   try {
@@ -106,7 +106,7 @@ void Session::act(const SaveState& c) {
 }
 
 namespace {
-// Overrides that give a key this value in a body or region, or all of them.
+// Overrides that set a key to this value in a body or region, or in all of them.
 std::vector<std::string> material_overrides(const Scene& scene, const SetMaterial& c) {
   std::vector<std::string> overrides;
   bool found = false;
@@ -211,13 +211,14 @@ void Session::act(const RemoveBall&) {
   ball_.remove(world());
 }
 
-// The scene with other values, going on from where the nodes are.
+// Builds the scene again with other values and continues from the current positions.
 void Session::change(const std::vector<std::string>& overrides) {
   fell_behind_ = false;
   try {
     world().change(overrides);
   } catch (const Error& e) {
-    // A given step that the new material is too stiff for is no reason to refuse the material.
+    // If the new material is too stiff for a given step, the step becomes automatic instead of an
+    // error.
     const bool asked = std::any_of(overrides.begin(), overrides.end(), [](const std::string& o) {
       return o.starts_with("dt=") || o.starts_with("substeps=");
     });

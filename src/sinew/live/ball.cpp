@@ -8,14 +8,13 @@
 namespace sinew::live {
 namespace {
 
-// How deep the ball enters tissue that it presses with a share of its modulus: pressure per depth
-// is this many moduli per radius.
+// Stiffness of the ball: pressure per depth in moduli of the tissue per radius of the ball [-].
 constexpr double hardness = 20.0;
-// Of what the stiffest mode has per mass, what the ball may add to a node.
+// Largest stiffness per mass that the ball may add to a node, as a share of the stiffest mode's.
 constexpr double stable_ball_share = 0.1;
-constexpr double fastest = 3.0;       // sizes of the body in a second
+constexpr double fastest = 3.0;       // sizes of the body per second
 constexpr double growing_time = 0.1;  // [s]
-constexpr double smallest = 1e-3;     // share of its radius that the ball begins with
+constexpr double smallest = 1e-3;     // initial radius as a share of the final one
 
 double largest_modulus(const Model& model) {
   const auto most = std::max_element(model.tet_modulus.begin(), model.tet_modulus.end());
@@ -28,7 +27,7 @@ const Obstacle& obstacle_of(const sim::World& world, ObstacleHandle tool) {
 
 }  // namespace
 
-// A step is stable when no node is pressed harder than what the model's stiffest mode allows.
+// The largest stiffness with which no node shortens the stable step, at most that of `hardness`.
 double Ball::pressure(const sim::World& world) const {
   const Model& model = world.model();
   const double stable_step = world.run().memory.stable_step;
@@ -46,7 +45,8 @@ void Ball::move(sim::World& world, const Vec3& point, double radius) {
   wished_ = point;
   wished_radius_ = radius;
   if (!tool_) {
-    // Softer than any: how hard it may press is known where the model has shares of its surface.
+    // Starts with a minimal stiffness: the admissible one follows from the model's surface shares,
+    // which exist once the tool is added.
     tool_ = world.add_tool("the ball", point, smallest * radius, 1.0);
   }
   hold(world);

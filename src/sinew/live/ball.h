@@ -1,7 +1,7 @@
 // The ball tool of the live view: a tool (sim/world.h) that follows a pointer.
 //
-// It grows to its size within a tenth of a second and moves at a speed that tissue can follow: a
-// ball that is put into the tissue, or jumps, pushes it aside and does not tear it.
+// It grows to its size within a tenth of a second and moves at a speed that tissue can follow, so a
+// ball that appears inside the tissue, or jumps, pushes it aside and does not tear it.
 #pragma once
 
 #include <optional>
@@ -13,18 +13,18 @@ namespace sinew::live {
 
 class Ball {
  public:
-  // From here on the ball is to be at `point` with this radius [m].
+  // Sets the target position and radius [m]; adds the ball if there is none.
   void move(sim::World& world, const Vec3& point, double radius);
   void remove(sim::World& world);
 
-  // Called between frames: the way of the next one, of `interval` [s]. `size` of the whole body
-  // [m].
+  // Moves the ball over the next frame of `interval` [s]; called between frames. `size` of the
+  // whole body [m].
   void follow(sim::World& world, double interval, double size);
 
-  // Presses as hard as a model that has taken the place of the one before allows.
+  // Updates the stiffness for a new model.
   void hold(sim::World& world);
 
-  // The same ball in a world that has gone on from its own.
+  // The same ball in a world that has taken over the state of its own.
   Ball in(const sim::World& world) const;
 
   bool is_there() const { return tool_.has_value(); }
@@ -34,9 +34,9 @@ class Ball {
  private:
   double pressure(const sim::World& world) const;
 
-  std::optional<ObstacleHandle> tool_;  // none: the ball is not there
-  Vec3 wished_ = Vec3::Zero();          // [m]
-  double wished_radius_ = 0.0;          // [m]
+  std::optional<ObstacleHandle> tool_;  // none: there is no ball
+  Vec3 wished_ = Vec3::Zero();          // target [m]
+  double wished_radius_ = 0.0;          // target [m]
   double stiffness_ = 0.0;              // [N/m3]
 };
 

@@ -9,10 +9,11 @@
 namespace sinew::live {
 namespace {
 
-// What is no further apart than this share of the bodies' size touches.
+// Largest distance of two bodies in contact, as a share of the bodies' size.
 constexpr double touch = 1e-5;
 
-constexpr double bears = 0.33;  // of a contact's push: one corner of a triangle does
+// Least weight of a marked node: each contact marks at least one corner of its triangle.
+constexpr double bears = 0.33;
 
 }  // namespace
 

@@ -1,5 +1,5 @@
-// The parts of a frame beside its quantity: positions as floats, nodes that touch something,
-// distances of compared bodies.
+// The parts of a frame besides its quantity: positions as floats, nodes in contact, distances of
+// compared bodies.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace sinew::live {
 
-// x of these nodes as floats [m] (3 a node).
+// Positions x of these nodes as floats [m] (3 a node).
 std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& nodes);
 
-// 1 for every node shown that touches an obstacle, the ground, another body or its own; empty where
-// none does. Of a contact those nodes that bear at least a third of it: both sides have one.
-// `finder`: of the model; null where only soft obstacles can touch.
+// 1 for every shown node in contact with an obstacle, the ground, another body or its own; empty if
+// there is none. A contact marks its nodes with a weight of at least a third, which exist on both
+// sides. `finder`: of the model; null if only soft obstacles can touch.
 std::vector<std::uint8_t> find_contacts(const Model& model, const State& state,
                                         const Topology& topology, ContactFinder* finder);
 
-// |a - b| of points [m], three coordinates each.
+// Distances |a - b| of points [m] from three coordinates each.
 std::vector<float> distances(const std::vector<float>& a, const std::vector<float>& b);
 
-// Over the first `count` nodes.
+// Largest and mean distance of the first `count` nodes.
 Distance distance_between(const std::vector<Vec3>& a, const std::vector<Vec3>& b, Index count);
 
 }  // namespace sinew::live

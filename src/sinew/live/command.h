@@ -1,4 +1,4 @@
-// The commands of a session. Values are checked where they act (apply_command.cpp).
+// The commands of a session. Values are checked when a command is applied (apply_command.cpp).
 #pragma once
 
 #include <functional>
@@ -15,27 +15,26 @@ struct Play {
   bool running = true;
 };
 
-// One step, or the steps to the end of the frame; pauses.
+// Takes one step, or the steps to the end of the frame; pauses.
 struct Advance {
   bool frame = false;
 };
 
-// Back to the start of the scene, with the values as they are now.
+// Returns to the start of the scene with the current values.
 struct Reset {};
 
-// Another scene in the place of this one; paused.
+// Replaces the scene by another one; pauses.
 struct Load {
   Scene scene;
 };
 
-// The same, of a scene that takes a while to read: the simulation's thread does it.
+// The same for a scene that takes long to read: the simulation's thread reads it.
 struct Open {
   std::function<Scene()> scene;  // may throw Error
 };
 
-// A key of [body.NAME] that says what it is made of: young, poisson, density, damping_ratio ...
-// Without a body: every body; without a region: the whole body, regions with a value of their own
-// included.
+// A material key of [body.NAME]: young, poisson, density, damping_ratio ... Without a body: every
+// body; without a region: the whole body, including regions with a value of their own.
 struct SetMaterial {
   std::string body;
   std::string region;
@@ -43,8 +42,7 @@ struct SetMaterial {
   std::string value;  // a number or a word, as TOML
 };
 
-// A key of the scene that says how it is stepped: stepper, scheme, dt, substeps, precision,
-// tolerance, safety.
+// A key of the scene for its steps: stepper, scheme, dt, substeps, precision, tolerance, safety.
 struct SetStepping {
   std::string key;
   std::string value;  // as TOML
@@ -55,24 +53,24 @@ struct SetGravity {
 };
 
 struct SetTimeScale {
-  double scale = 1.0;  // simulated seconds to aim at in a second [-] in [0.001, 100]
+  double scale = 1.0;  // target of simulated seconds per second [-] in [0.001, 100]
 };
 
 struct SetQuantity {
   Quantity quantity = Quantity::displacement;
 };
 
-// Takes hold of the tissue around a node of the surface: a spring from there to the hand.
+// Grabs the tissue around a node of the surface with a spring to the hand.
 struct Grab {
-  int hand = 0;               // which, from 0 to most_hands - 1; one that holds something lets go
-  Index node = 0;             // of the surface (Topology)
-  Vec3 point = Vec3::Zero();  // where the hand is [m]
-  double radius = 0.0;        // of what it holds [m]; 0: some of the mesh's edges
+  int hand = 0;    // number from 0 to most_hands - 1; a hand that holds something releases it
+  Index node = 0;  // of the surface (Topology)
+  Vec3 point = Vec3::Zero();  // position of the hand [m]
+  double radius = 0.0;        // of the grabbed patch [m]; 0: a few of the mesh's edges
 };
 
 struct Drag {
   int hand = 0;
-  Vec3 point = Vec3::Zero();  // where the hand is now [m]
+  Vec3 point = Vec3::Zero();  // current position of the hand [m]
 };
 
 struct Release {
@@ -81,11 +79,11 @@ struct Release {
 
 inline constexpr int most_hands = 16;
 
-// The ball tool: a rigid, frictionless sphere that pushes. It gets there within a frame or, from
-// far, at a speed that tissue can follow.
+// The ball tool: a rigid, frictionless sphere that pushes. It reaches its target within a frame or,
+// from far away, at a speed that tissue can follow.
 struct MoveBall {
-  Vec3 point = Vec3::Zero();  // where its centre is to be [m]
-  double radius = 0.0;        // [m]; 0: as it is, or a tenth of the body's size
+  Vec3 point = Vec3::Zero();  // target of its centre [m]
+  double radius = 0.0;        // [m]; 0: unchanged, or a tenth of the body's size
 };
 
 struct RemoveBall {};
@@ -99,8 +97,8 @@ struct SetSprings {
   bool shown = false;
 };
 
-// Another body with the same values but this law (scene/laws.h), in lock-step with the first, from
-// where that one is now. An empty name ends it.
+// A second body with the same values but this law (scene/laws.h), stepped in lock-step with the
+// first from its current state. An empty name removes it.
 struct SetCompare {
   std::string law;
 };

@@ -1,4 +1,4 @@
-// A session's other body: the same scene with another law, in lock-step.
+// The second body of a session: the same scene with another law, stepped in lock-step.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace sinew::live {
 namespace {
 
-// What makes a law: the other body keeps its own.
+// Keys that define the law: the second body keeps its own values.
 bool is_of_law(const SetMaterial& c) {
   return c.key == "law" || c.key == "volume" || c.key == "beta";
 }
@@ -21,7 +21,7 @@ Scene with_law(const Scene& scene, const LawChoice& law) {
   for (const SceneBody& body : scene.bodies) {
     for (const std::string& set : law.set) {
       overrides.push_back("body." + body.name + "." + set);
-      // A region with a law of its own gives it up, too.
+      // Also replaces the law of regions that have their own.
       for (const SceneRegion& r : body.regions) {
         overrides.push_back("body." + body.name + ".region." + r.name + "." + set);
       }
@@ -47,7 +47,7 @@ void Session::act(const SetCompare& c) {
   }
   std::unique_ptr<Session> other(new Session(with_law(world().current_scene(), *law), this));
   other_.reset();
-  // Both begin anew from this state: with the same law they would take the same steps.
+  // Both start anew from this state, so with the same law they take the same steps.
   world().choose_steps();
   changed();
   other->world().go_on_from(world());
@@ -62,7 +62,7 @@ void Session::act(const SetCompare& c) {
   remember_parameters();
 }
 
-// Passes on what concerns both bodies. Where the other cannot follow, it goes.
+// Passes a command on if it concerns both bodies. If the second body cannot follow, it is removed.
 void Session::tell_other(const Command& command) {
   try {
     std::visit(
@@ -87,13 +87,13 @@ void Session::tell_other(const Command& command) {
   }
 }
 
-// Steps the other to the time of this one. False where there is no time left for that.
+// Steps the second body to the time of the first. Returns false if no time is left for it.
 bool Session::catch_up(Clock::time_point deadline, const std::atomic<bool>* hurry) {
   if (!other_) return true;
   const std::uint32_t errors = other_->errors_;
   const double close = 1e-9 * std::max(1.0, time());
   while (other_->time() < time() - close) {
-    // The rest of a frame where this one has finished it, a step where this one has taken one.
+    // The rest of a frame if the first body has finished it, a step if it has taken one.
     const bool finished = other_->steps(deadline, hurry, !ahead_);
     if (other_->errors_ != errors) {
       const std::string what = other_->error_;
@@ -117,7 +117,7 @@ void Session::note_pair() {
   pair_.others = other_->state().position;
 }
 
-// Simulated seconds per second of wall time that the steps alone would allow.
+// Simulated seconds per second of wall time, without waiting for the clock.
 double Session::capacity() const {
   if (last_speed_.wall == 0.0) return 0.0;
   double needed = last_speed_.wall / last_speed_.simulated;

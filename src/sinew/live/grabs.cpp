@@ -3,7 +3,7 @@
 namespace sinew::live {
 namespace {
 
-constexpr double pace = 0.05;  // of the body's size in a frame
+constexpr double pace = 0.05;  // share of the body's size per frame
 
 }  // namespace
 

@@ -1,4 +1,4 @@
-// Triangles to draw a shape by, whichever shape it is.
+// Triangles for drawing a shape of any kind.
 #pragma once
 
 #include <cmath>
@@ -11,12 +11,13 @@ namespace sinew::live {
 
 struct Outline {
   std::vector<Vec3> vertices;       // in the shape's own axes [m]
-  std::vector<Vec3> normals;        // outwards, of the surface there (vertices)
+  std::vector<Vec3> normals;        // outwards, of the surface at the vertex (vertices)
   std::vector<Triangle> triangles;  // counter-clockwise seen from outside
 };
 
-// The places of a convex, bounded shape that are nearest to a grid of points on a ball around it.
-// Along an edge many points have the same place and different normals, so edges stay sharp.
+// The points of a convex, bounded shape that are nearest to a grid of points on a ball around it.
+// Many grid points share one nearest point along an edge, with different normals, so edges stay
+// sharp.
 template <SolidShape S>
 Outline outline_of(const S& shape) {
   constexpr Index rings = 24;
@@ -24,7 +25,7 @@ Outline outline_of(const S& shape) {
   const double radius = 2.0 * shape.farthest();
   Outline out;
   for (Index i = 0; i <= rings; ++i) {
-    const double polar = std::numbers::pi * i / rings;  // from its own z
+    const double polar = std::numbers::pi * i / rings;  // from its own z axis
     for (Index k = 0; k < around; ++k) {
       const double angle = 2.0 * std::numbers::pi * k / around;
       const Vec3 direction(std::sin(polar) * std::cos(angle), std::sin(polar) * std::sin(angle),

@@ -81,7 +81,7 @@ std::vector<float> measure(Quantity quantity, const Model& model, const State& s
       break;
     case Quantity::stretch: {
       const std::vector<double> stretch = node_stretch(model, state.position);
-      // Anchors of attachments, which come after the nodes of bodies, have none.
+      // Anchors of attachments, which come after the nodes of bodies, have no stretch.
       fill([&](Index i) { return node(i) < stretch.size() ? stretch[node(i)] : 0.0; });
       break;
     }

@@ -1,4 +1,4 @@
-// The quantities that colour a surface in the live view: one number per node of it.
+// The quantities that colour a surface in the live view: one number per node.
 #pragma once
 
 #include <array>
@@ -13,20 +13,20 @@ namespace sinew::live {
 
 enum class Quantity {
   displacement,  // |x - X| [m]
-  stretch,       // of the spring at the node that is furthest from rest, |x_ij| / l0 - 1 [-]
+  stretch,       // of the node's spring with the largest deviation from rest, |x_ij| / l0 - 1 [-]
   volume,        // change of the tets at the node, v / V - 1 [-]
   stress,        // von Mises stress of the tets at the node [Pa]
-  energy,        // of the change of shape per volume of the tets at the node [J/m3]
+  energy,        // distortion energy per volume of the tets at the node [J/m3]
   speed,         // |v| [m/s]
   region,        // number of the region (Topology::regions)
-  distance,      // from the node of the compared body [m]; 0 where there is none
+  distance,      // from the node of the compared body [m]; 0 without one
 };
 
 struct QuantityInfo {
   std::string_view name;   // the word of the protocol
-  std::string_view title;  // for people
+  std::string_view title;  // for readers
   std::string_view unit;
-  bool is_signed;  // colours should be centred on 0
+  bool is_signed;  // colours are centred on 0
 };
 inline constexpr std::array<QuantityInfo, 8> quantities = {{
     {"displacement", "Displacement", "m", false},
@@ -44,16 +44,16 @@ inline const QuantityInfo& info(Quantity q) {
 std::optional<Quantity> quantity_named(std::string_view name);
 
 // Von Mises stress of the (stable) neo-Hookean material [Pa] from its shear modulus [Pa] and the
-// deformation gradient F: sqrt(3/2) |dev s|, s = mu / J (F F^T) up to a pressure. 0 where the tet
-// is flat or inside out: there is no such stress then.
+// deformation gradient F: sqrt(3/2) |dev s|, s = mu / J (F F^T) up to a pressure. 0 for a flat or
+// inverted tet, which has no such stress.
 double von_mises(double shear_modulus, const Mat3& F);
 
-// The energy that such a material takes to change its shape, not its volume [J/m3]:
-// mu / 2 (J^(-2/3) |F|^2 - 3). 0 where the tet is flat or inside out.
+// Energy density of such a material for a change of shape without volume [J/m3]: mu / 2 (J^(-2/3)
+// |F|^2 - 3). 0 for a flat or inverted tet.
 double distortion_energy(double shear_modulus, const Mat3& F);
 
-// The quantity at every node that is shown, means over the tets at the node where it is theirs.
-// All but distance, which is 0.
+// The quantity at every shown node; quantities of tets are averaged over the tets at the node.
+// `distance` is 0 here.
 std::vector<float> measure(Quantity quantity, const Model& model, const State& state,
                            const Topology& topology);
 

@@ -13,12 +13,12 @@ using std::chrono::milliseconds;
 
 // A frame that takes longer is shown half done.
 constexpr milliseconds longest_slice(25);
-// Behind the clock by more than this, time lost is not made up for.
+// If the simulation is further behind the clock, it does not catch up.
 constexpr milliseconds most_lag(100);
 constexpr milliseconds between_status(100);
 constexpr double rate_window = 0.5;  // [s]
 
-// Whether `later` makes `earlier`, which waits right before it, needless.
+// Whether `later` makes `earlier`, the command queued right before it, unnecessary.
 bool replaces(const Command& later, const Command& earlier) {
   if (later.index() != earlier.index()) return false;
   if (const auto* drag = std::get_if<Drag>(&later)) {
@@ -41,7 +41,7 @@ Clock::duration seconds(double s) {
   return std::chrono::duration_cast<Clock::duration>(duration<double>(s));
 }
 
-// When a simulated time is due by the clock; how fast it really goes.
+// Maps simulated times to the clock and measures the actual speed.
 class ClockPace {
  public:
   void start(double time, double scale) {
@@ -56,7 +56,7 @@ class ClockPace {
     return anchor_ + seconds((time - anchor_time_) / scale_);
   }
 
-  // Called after every slice; keeps `rate` as it was until the window is over.
+  // Called after every slice; `rate` does not change until the window is over.
   void note(double time, double& rate) {
     const Clock::time_point now = Clock::now();
     if (now - due(time) > most_lag) {
@@ -121,7 +121,7 @@ void Runner::apply(std::deque<Command>& commands) {
       session_.apply(command);
     } catch (const Error& e) {
       session_.report(e);
-    } catch (const std::exception& e) {  // such as memory that a finer mesh would need
+    } catch (const std::exception& e) {  // for example no memory for a finer mesh
       session_.report(Error(ErrorKind::internal, e.what(), "a smaller scene"));
     }
   }
@@ -153,11 +153,11 @@ void Runner::work() {
       if (!pace.fits(session_.time_scale()) || session_.time() < before) {
         pace.start(session_.time(), session_.time_scale());
       }
-      // Woken by a command before the frame is due: it is shown when that time comes.
+      // A command woke the thread before the frame was due: the frame is shown at its time.
       if (Clock::now() < pace.due(session_.time())) continue;
       session_.advance(Clock::now() + longest_slice, &hurry_);
       pace.note(session_.time(), rate_);
-      // Hands that never rest do not keep frames from being shown.
+      // Hands that never stop moving must not prevent frames from being shown.
       if (hurry_ && Clock::now() - published_at_ < longest_slice) continue;
       if (!session_.running()) status_at_ = {};
     }

@@ -1,4 +1,4 @@
-// A Session on a thread of its own, at the pace of the clock. It takes commands, and gives the
+// Runs a Session on a separate thread at the pace of the clock. It takes commands, and gives the
 // newest frame and status at any time.
 #pragma once
 
@@ -14,7 +14,7 @@
 
 namespace sinew::live {
 
-// All of one moment. The pointers are never null, what they point to never changes.
+// A consistent set. The pointers are never null, and their objects never change.
 struct Snapshot {
   std::shared_ptr<const Topology> topology;
   std::shared_ptr<const Parameters> parameters;
@@ -24,15 +24,15 @@ struct Snapshot {
 
 class Runner {
  public:
-  // Builds the scene before it returns; throws what Session throws. `published` is called on the
+  // Builds the scene before it returns; throws the errors of Session. `published` is called on the
   // session's thread after every new frame or status, and must be quick.
   explicit Runner(const Scene& scene, std::function<void()> published = {});
-  ~Runner();  // ends the thread after the step under way
+  ~Runner();  // ends the thread after the current step
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;
 
   // Queues the command. Of successive moves of one hand, or values of one key, only the last is
-  // kept. False: too many commands wait, and this one is dropped.
+  // kept. Returns false if too many commands wait; this one is then dropped.
   bool post(Command command);
 
   Snapshot snapshot() const;
@@ -47,11 +47,11 @@ class Runner {
   Session session_;
   std::function<void()> published_;
   double rate_ = 0.0;              // see Status
-  Clock::time_point status_at_{};  // when it was last measured
+  Clock::time_point status_at_{};  // time of the last status
   Clock::time_point published_at_{};
-  std::atomic<bool> hurry_{false};  // a hand has moved: the frame under way is to know
+  std::atomic<bool> hurry_{false};  // a hand has moved, which the current frame must take up
 
-  mutable std::mutex mutex_;  // of all that follows
+  mutable std::mutex mutex_;  // for all members below
   std::condition_variable wake_;
   std::deque<Command> commands_;
   Snapshot snapshot_;

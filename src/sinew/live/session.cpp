@@ -16,7 +16,7 @@
 namespace sinew::live {
 namespace {
 
-// Of a sphere around the obstacle's centre that holds it [m]; 0 where there is none.
+// Radius of a sphere around the obstacle's centre that contains it [m]; 0 if there is none.
 double radius_around(const Obstacle& o) {
   const double radius =
       std::visit(Overloaded{[](const shapes::Mesh&) { return 0.0; },
@@ -25,7 +25,7 @@ double radius_around(const Obstacle& o) {
   return std::isfinite(radius) ? radius : 0.0;
 }
 
-// What is shown of an obstacle.
+// The data of an obstacle for the page.
 Parameters::Rigid rigid_of(const Model& model, const Obstacle& o) {
   Parameters::Rigid out{o.name, radius_around(o), std::string(word_of(o.shape)), {}, {}, {}};
   const auto show_mesh = [&](const shapes::Mesh& mesh) {
@@ -51,10 +51,10 @@ Parameters::Rigid rigid_of(const Model& model, const Obstacle& o) {
   return out;
 }
 
-// How much is measured before the speed is said anew [s] of wall time.
+// Wall time between updates of the reported speed [s].
 constexpr double speed_window = 0.5;
 
-// Explicit steps that have made less than this share of real time have fallen behind [-].
+// Explicit steps below this share of real time have fallen behind the clock [-].
 constexpr double slow_pace = 0.7;
 
 }  // namespace
@@ -87,8 +87,8 @@ void Session::let_go() {
   ball_.remove(world());
 }
 
-// Frames of the view's own length, for ever. A scene that names no steps takes those that keep up
-// with the clock, and a compared body the same as the first.
+// Frames of the view's own length, without an end. A scene without keys of steps takes steps that
+// keep up with the clock; a compared body takes the same stepper as the first.
 SteppingOptions Session::options_for(const Scene& scene) const {
   SteppingOptions o = stepping_options(scene);
   o.duration = no_limit;
@@ -104,7 +104,7 @@ SteppingOptions Session::options_for(const Scene& scene) const {
   return o;
 }
 
-// After the model or its steps are other ones.
+// Called after a change of the model or of its steps.
 void Session::changed() {
   ball_.hold(world());
   ahead_ = false;
@@ -164,7 +164,7 @@ bool Session::advance(Clock::time_point deadline, const std::atomic<bool>* hurry
   return true;
 }
 
-// Explicit steps that were fast enough for the body at rest may not be for one that is stretched.
+// Explicit steps become shorter as the body stretches, and may no longer keep up with the clock.
 void Session::keep_pace() {
   if (fell_behind_ || leader_ != nullptr || world().run().stepper != StepperKind::verlet) return;
   const Speed& v = last_speed_;
@@ -188,7 +188,7 @@ bool Session::steps(Clock::time_point deadline, const std::atomic<bool>* hurry, 
   bool finished = false;
   try {
     finished = only_one ? world().step() : world().advance_frame(hurry, deadline);
-  } catch (const Error& e) {  // the world is back where the last frame ended
+  } catch (const Error& e) {  // the world has returned to the end of the last frame
     running_ = false;
     report(e);
     let_go();
@@ -207,7 +207,7 @@ bool Session::steps(Clock::time_point deadline, const std::atomic<bool>* hurry, 
   return finished;
 }
 
-// What keeps the simulation from the speed that is asked for.
+// The reason why the simulation does not reach the requested speed.
 std::string Session::limiting() const {
   const RunState& run = world().run();
   if (last_speed_.wall == 0.0) return {};
@@ -281,7 +281,7 @@ Frame Session::frame() {
   f.number = ++frames_;
   f.time = state.time;
   f.quantity = quantity_;
-  // Compared bodies are shown at the same time, where both have got to.
+  // Compared bodies are shown at the latest time that both have reached.
   f.position = gather(other_ ? pair_.mine : state.position, topology_->node);
   f.value = measure(quantity_, model(), state, *topology_);
   f.contact = find_contacts(model(), state, *topology_, world().finder());

@@ -1,6 +1,6 @@
-// A simulation that is watched and changed while it runs: what the view shows of a World
-// (sim/world.h), and the commands that change it. It has no thread, no socket, and no clock but for
-// its own speed. docs/view.md. Runner (runner.h) gives it a thread.
+// A simulation that is shown and changed while it runs: the view's data of a World (sim/world.h),
+// and the commands that change it. It has no thread and no socket, and uses the clock only to
+// measure its speed. docs/view.md. Runner (runner.h) gives it a thread.
 #pragma once
 
 #include <atomic>
@@ -22,26 +22,27 @@ inline constexpr double frames_per_second = 60.0;
 class Session {
  public:
   // Builds the scene's model; paused. A scene with stepper = "static" takes implicit steps. Throws
-  // what sim::simulate throws.
+  // the errors of sim::simulate.
   explicit Session(const Scene& scene) : Session(scene, nullptr) {}
   Session(const Session&) = delete;
   Session& operator=(const Session&) = delete;
 
-  // Carries out the command. Throws Error(input, usage) and changes nothing if a value cannot be
-  // used or a node or hand does not exist; Load throws what the constructor throws.
+  // Applies the command. Throws Error(input, usage) and changes nothing if a value cannot be used
+  // or a node or hand does not exist; Load throws the errors of the constructor.
   void apply(const Command& command);
 
   bool running() const { return running_; }
   double time() const { return state().time; }
   double time_scale() const { return time_scale_; }
 
-  // Takes steps to the end of the frame under way, one at least; none after `deadline`, and none
-  // once `hurry` is set. True: the frame is finished, that of a compared body as well. A body that
-  // diverges returns to the end of the last frame and is paused; the status says why.
+  // Takes steps to the end of the current frame, at least one; none after `deadline`, and none
+  // after `hurry` is set. Returns true if the frame is finished, that of a compared body as well.
+  // If a body diverges, it returns to the end of the last frame and is paused; the status gives the
+  // reason.
   bool advance(Clock::time_point deadline, const std::atomic<bool>* hurry = nullptr);
   void take_step();
 
-  // Measures energies, which costs about as much as a step in double precision.
+  // Measures energies too, which costs about as much as a step in double precision.
   Status status();
   Frame frame();
   std::shared_ptr<const Topology> topology() const { return topology_; }
@@ -53,7 +54,7 @@ class Session {
   void report(const Error& error);
 
  private:
-  struct Speed {  // of the steps since `since`
+  struct Speed {  // summed over steps
     double wall = 0.0;
     double simulated = 0.0;
     std::int64_t steps = 0, newton = 0, products = 0;
@@ -79,7 +80,7 @@ class Session {
   void act(const SetCompare& c);
   void act(const SaveState& c);
 
-  // `leader`: the session whose steps this one takes, to be compared with it.
+  // `leader`: the session that this one is compared with; it takes the leader's stepper.
   Session(const Scene& scene, const Session* leader);
 
   sim::World& world() { return sim::internals(simulation_); }
@@ -95,7 +96,7 @@ class Session {
   bool catch_up(Clock::time_point deadline, const std::atomic<bool>* hurry);
   void note_pair();
   void keep_pace();
-  // Of all terms at the state [N] (nodes).
+  // The sum of all terms at the state [N] (nodes).
   const std::vector<Vec3>& force() {
     return world().stepping().forces().evaluate(world().controls(), state()).force;
   }
@@ -106,7 +107,7 @@ class Session {
 
   const Session* const leader_;
   bool fell_behind_ = false;  // with explicit steps, since a value was changed
-  Simulation simulation_;     // is stepped as options_for says of the two above
+  Simulation simulation_;     // stepped as options_for requires, with the two members above
   std::shared_ptr<const Topology> topology_;
   std::shared_ptr<const Parameters> parameters_;
   Grabs grabs_;
@@ -124,7 +125,7 @@ class Session {
   // The body that this one is compared with: a session of the same scene with another law.
   std::unique_ptr<Session> other_;
   std::string compare_;  // that law's name
-  bool ahead_ = false;   // this one's frame is finished, the other's is not
+  bool ahead_ = false;   // this body's frame is finished, the other's is not
   struct Pair {          // positions of both at the same time [m] (nodes)
     std::vector<Vec3> mine, others;
   };

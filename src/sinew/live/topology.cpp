@@ -11,7 +11,7 @@ void add_coordinates(const Vec3& x, std::vector<float>& to) {
   for (int c = 0; c < 3; ++c) to.push_back(static_cast<float>(x[c]));
 }
 
-// Tets of the nodes that have a place in `of` (-1: none), as offsets and ids.
+// Lists the tets of the nodes that have a number in `of` (-1: none), as offsets and ids.
 void list_tets(const Model& model, const std::vector<Index>& of, Topology& t) {
   t.tet_start.assign(t.node.size() + 1, 0);
   for (const Tet& tet : model.tets) {
@@ -29,7 +29,7 @@ void list_tets(const Model& model, const std::vector<Index>& of, Topology& t) {
   }
 }
 
-// The region of a node is the last of its tets' regions: where two meet, the inner one shows.
+// The region of a node is the last of its tets' regions, so the inner region shows at a border.
 void name_regions(const Model& model, Topology& t) {
   std::vector<int> first;  // of the bodies' regions in t.regions
   for (const Body& body : model.bodies) {
@@ -51,7 +51,7 @@ void name_regions(const Model& model, Topology& t) {
   }
 }
 
-// The tets that the cut leaves.
+// The tets that the cut does not hide.
 std::vector<Tet> tets_left(const Model& model, const Cut& cut) {
   if (cut.normal.isZero()) return model.tets;
   std::vector<Tet> left;
@@ -71,7 +71,7 @@ std::vector<Tet> tets_left(const Model& model, const Cut& cut) {
   return left;
 }
 
-// Marks the nodes to be shown by 0, others by -1.
+// Marks the shown nodes by 0, the others by -1.
 std::vector<Index> shown_nodes(const Model& model, const std::vector<Tet>& tets,
                                const Surface& surface, bool springs) {
   std::vector<Index> of(uz(model.node_count()), -1);

@@ -1,6 +1,5 @@
-// The parts of a model that the live view draws: the surface of its bodies, or of what a cut leaves
-// of them, and springs if they are asked for. A topology holds until another scene is loaded or
-// another cut is asked for.
+// The parts of a model that the live view draws: the surface of its bodies, or of the part that a
+// cut leaves, and springs on request. A topology is valid until the scene or the cut changes.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +10,7 @@
 
 namespace sinew::live {
 
-// Which tets are not shown: those whose middle X at rest has normal . X > offset. A normal of zero
-// shows all.
+// Hides the tets whose middle X at rest has normal . X > offset. A zero normal hides none.
 struct Cut {
   Vec3 normal = Vec3::Zero();
   double offset = 0.0;  // [m] times the length of the normal
@@ -29,14 +27,14 @@ struct Topology {
   std::vector<std::uint8_t> pinned;     // 1 where the motion is given (nodes shown)
   std::vector<std::string> regions;     // "liver: parenchyma"
   float diagonal = 0.0F;                // of the whole body's bounding box at rest [m]
-  float edge = 0.0F;                    // mean edge of what is drawn [m]
+  float edge = 0.0F;                    // mean edge of the drawn surface [m]
 
-  // Of the model, for what is measured there:
+  // For measurements, nodes and tets of the Model:
   std::vector<Index> tet_start;  // offsets into tet (nodes shown + 1)
   std::vector<Index> tet;        // tets at each node shown
 };
 
-// A cut that would leave nothing leaves the tet that it would take last.
+// A cut that would hide all tets leaves the last one along its normal.
 Topology make_topology(const Model& model, std::uint32_t revision, const Cut& cut = {},
                        bool springs = false);
 

@@ -51,7 +51,7 @@ constexpr std::string_view energy_header =
 constexpr std::string_view frames_header =
     "frame,time [s],wall [ms],steps,newton_steps,products,residual,cut_short";
 
-// The file with its header and, of an earlier run, the first `rows` rows: opened to go on.
+// Opens a table for appending, with its header and the first `rows` rows of an earlier run.
 std::ofstream open_table(const fs::path& file, std::string_view header, std::size_t rows) {
   std::string kept = std::string(header) + "\n";
   if (rows > 0) {

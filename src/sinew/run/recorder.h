@@ -1,5 +1,5 @@
-// The files of a run that show its frames: a VTU file per frame and a .pvd that lists them,
-// probes.csv, energy.csv, frames.csv.
+// The files of a run with the results of its frames: a VTU file per frame and a .pvd that lists
+// them, probes.csv, energy.csv, frames.csv.
 #pragma once
 
 #include <filesystem>
@@ -21,8 +21,8 @@ class Recorder {
   Recorder(const Scene& scene, const Model& model, std::filesystem::path folder,
            const RunState& run);
 
-  // Writes the current state as the last frame of run.frame_times. `force`: of all terms there [N]
-  // (nodes), as below. `finder`: null if nothing can touch.
+  // Writes the current state as the last frame of run.frame_times. `force`: the sum of all terms at
+  // the state [N] (nodes). `finder`: null if nothing can touch.
   void record(const Controls& controls, const RunState& run, const std::vector<Vec3>& force,
               ContactFinder* finder);
 
@@ -30,11 +30,11 @@ class Recorder {
   void write_collection(const RunState& run) const;
 
   const Model& model_;
-  std::string scene_;  // its name, which names the files
+  std::string scene_;  // its name, which is part of the file names
   std::filesystem::path folder_;
   bool vtu_;
   io::VtuEncoding encoding_;
-  std::string cells_;  // encoded once: they are the same in every frame
+  std::string cells_;  // encoded once, because all frames have the same
   std::ofstream probes_;
   std::ofstream energy_;
   std::ofstream frames_;
@@ -45,7 +45,7 @@ class Recorder {
 std::string format_frame(const Model& model, const RunState& run, const std::vector<Vec3>& force,
                          io::VtuEncoding encoding, std::string_view cells = {});
 
-// Stretch of each body node: that of its spring furthest from rest, |x_ij| / l0 - 1 [-].
+// Stretch |x_ij| / l0 - 1 [-] of each body node: that of its spring with the largest deviation.
 std::vector<double> node_stretch(const Model& model, const std::vector<Vec3>& x);
 
 }  // namespace sinew

@@ -24,7 +24,7 @@ constexpr const char* checkpoint_name = "checkpoint.bin";
 constexpr const char* scene_name = "scene.toml";
 constexpr const char* summary_name = "summary.json";
 
-// The folder to write, made and empty of earlier runs.
+// Creates the output folder, and removes the files of an earlier run.
 void prepare_folder(const Scene& scene, const RunOptions& options) {
   if (options.out.empty()) return;
   const bool has_run =
@@ -50,7 +50,7 @@ void prepare_folder(const Scene& scene, const RunOptions& options) {
   io::write_file(options.out / scene_name, document_with_base(scene));
 }
 
-// One run of a World from where it stands to its end, into a folder.
+// Runs a World from its current state to its end, and writes the results into a folder.
 class Runner {
  public:
   Runner(sim::World& world, const RunOptions& options, Clock::time_point start)
@@ -115,7 +115,7 @@ class Runner {
  private:
   void count_time() { run_.wall_seconds = wall_before_ + seconds_since(start_); }
 
-  // Of all terms at the state [N] (nodes).
+  // The sum of all terms at the state [N] (nodes).
   const std::vector<Vec3>& force() const {
     return world_.stepping().forces().evaluate(world_.controls(), run_.state).force;
   }
@@ -133,7 +133,7 @@ class Runner {
     if (options_.on_progress) options_.on_progress(progress);
   }
 
-  // A run that goes on does not tell again how its bodies overlapped at the start.
+  // A resumed run does not report again that bodies overlapped at the start.
   std::vector<std::string> warnings() const {
     std::vector<std::string> out = world_.warnings();
     if (resumed_) out.resize(out.size() - world_.report().warnings.size());

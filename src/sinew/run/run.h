@@ -1,4 +1,4 @@
-// A run of a scene into a folder: from its start, or on from a checkpoint.
+// A run of a scene into a folder: from its start, or resumed from a checkpoint.
 #pragma once
 
 #include <atomic>
@@ -18,26 +18,26 @@ struct Progress {
   double sim_seconds = 0.0;
   double duration = 0.0;
   double wall_seconds = 0.0;   // of this run, from before the first step
-  double start_seconds = 0.0;  // simulated time at which this run began (a resumed one: not 0)
+  double start_seconds = 0.0;  // simulated time at which this run began (resumed: not 0)
   std::int64_t frame = 0;
   std::int64_t frames = 0;
 };
 
 struct RunOptions {
-  std::filesystem::path out;                         // folder to write; empty: nothing is written
+  std::filesystem::path out;                         // output folder; empty: nothing is written
   bool force = false;                                // an earlier run in `out` may be replaced
-  const std::atomic<bool>* stop = nullptr;           // true ends the run after the step under way
+  const std::atomic<bool>* stop = nullptr;           // true ends the run after the current step
   std::function<void(const Progress&)> on_progress;  // called after every frame
-  // Called before the first step of stepper = "auto" with RunState::stepper and its reason.
+  // Called before the first step of stepper = "auto" with RunState::stepper and the reason.
   std::function<void(StepperKind, const std::string&)> on_stepper;
-  // Called before the first step with each fault of the start. The summary has them as well.
+  // Called before the first step with each warning about the start. The summary has them too.
   std::function<void(const std::string&)> on_warning;
 };
 
 struct RunResult {
   RunStatus status = RunStatus::finished;
   Summary summary;
-  std::optional<Error> error;  // why a run diverged
+  std::optional<Error> error;  // of a run that diverged
 };
 
 // Writes scene.toml (the scene with its overrides, from which the run can be resumed), NAME.pvd and

@@ -1,4 +1,4 @@
-// The result of a run, as summary.json and the table of the command line show it.
+// The result of a run: content of summary.json and of the command line's table.
 #pragma once
 
 #include <array>
@@ -34,29 +34,29 @@ struct BodySummary {
   double volume_ratio = 1.0;  // current over rest volume [-]
 };
 
-// How the frames kept to budget_ms.
+// How well the frames kept to budget_ms.
 struct BudgetSummary {
-  double ms = 0.0;                                  // of wall time that the steps of a frame had
+  double ms = 0.0;                                  // wall time allowed for the steps of a frame
   std::int64_t cut_short = 0;                       // frames with a step that ran out of time
   std::int64_t late = 0;                            // frames that took longer
   double largest_ms = 0.0, percentile_99_ms = 0.0;  // of the frames
   double largest_residual = 0.0;                    // of the steps, see NewtonReport::residual
 };
 
-// Beside these the counters of the run (sim/run_counters.h).
+// The result also has the counters of the run (sim/run_counters.h).
 struct Summary : RunCounters {
   RunStatus status = RunStatus::finished;
   std::string scene, title, look_for;
   std::string scene_hash, model_hash, state_hash;
   std::vector<BodySummary> bodies;
   Index nodes = 0, tets = 0, springs = 0;
-  StepperKind stepper = StepperKind::verlet;        // the one that ran
+  StepperKind stepper = StepperKind::verlet;        // in use
   StepperKind stepper_asked = StepperKind::verlet;  // of the scene
   Precision precision = Precision::single;          // of the forces
   std::string stepper_reason;                       // of stepper = "auto"
   bool dt_auto = true;
-  double dt = 0.0;           // the step last taken [s]
-  double stable_step = 0.0;  // the smallest seen in the run [s]
+  double dt = 0.0;           // of the last step [s]
+  double stable_step = 0.0;  // the smallest of the run [s]
   std::int64_t steps = 0;
   std::int64_t frames = 0;
   double sim_seconds = 0.0;
@@ -78,8 +78,8 @@ struct Summary : RunCounters {
   double realtime_factor() const { return wall_seconds > 0.0 ? sim_seconds / wall_seconds : 0.0; }
 };
 
-// Measures the current state of the run. `meshes`: the source of each body's mesh; `finder`: null if
-// nothing can touch.
+// Measures the current state of the run. `meshes`: the source of each body's mesh; `finder`: null
+// if nothing can touch.
 Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
                   const std::vector<std::string>& meshes, RunState& run,
                   const std::vector<Vec3>& force, ContactFinder* finder);

@@ -21,7 +21,7 @@
 namespace sinew::study {
 namespace {
 
-// The beam of scenes/beam.toml. Network: without dashpots, because drag alone brings it to rest.
+// The beam of scenes/beam.toml. The network law needs no dashpots, because drag brings it to rest.
 constexpr const char* beam_text = R"(title = "The clamped beam of the benchmarks"
 duration = 2
 tolerance = 0.1
@@ -37,11 +37,11 @@ poisson = 0.45
 select = { side = "-z" }
 )";
 
-constexpr int steps_before = 20;   // that a state of the kernels and its hash come from
+constexpr int steps_before = 20;   // before the state of the kernels and its hash
 constexpr double residual = 1e-3;  // of the conjugate gradients
 constexpr double frame_seconds = 1.0 / 60.0;
 
-// A body in motion: forces differ from node to node, as in a run.
+// The state of a body in motion, whose forces differ from node to node, as in a run.
 State moved(const Model& model, double h, VerletStepper& stepper) {
   State s = initial_state(model);
   for (int i = 0; i < steps_before; ++i) stepper.step(h, initial_controls(model), s);

@@ -41,8 +41,8 @@ double cache_size(int level) {
   return 0.0;
 }
 
-// Size of all arrays together that measures the level [B]: well within it, and well beyond the one
-// before. A shared L3 is not all ours: a few times L2 is.
+// Size of all arrays together that measures a level [B]: well within the level, and well beyond the
+// one before. A shared L3 is not available entirely: a few times L2 is.
 double array_bytes(MemoryLevel level, const CacheSizes& caches, int threads) {
   const double l2 = caches.l2 * threads;
   switch (level) {

@@ -1,5 +1,5 @@
-// The machine's own limits, measured: how fast memory of three sizes is copied, and how many
-// multiply-adds a second the processor does.
+// The measured limits of the machine: the rate at which memory of three sizes is copied, and the
+// processor's multiply-adds per second.
 #pragma once
 
 #include <array>
@@ -10,7 +10,7 @@
 
 namespace sinew::study {
 
-// As the system says; where it does not, 1 MiB and 8 MiB.
+// As the system reports; otherwise 1 MiB and 8 MiB.
 struct CacheSizes {
   double l2 = 0.0;  // [B] of one core
   double l3 = 0.0;  // [B] of all
@@ -20,7 +20,7 @@ CacheSizes cache_sizes();
 enum class MemoryLevel { l2, l3, memory };
 inline constexpr std::array<const char*, 3> level_names = {"L2", "L3", "memory"};
 
-// The nearest level that holds so many bytes, spread over the threads' cores.
+// The nearest level that holds this many bytes, spread over the threads' cores.
 MemoryLevel level_of(const CacheSizes& caches, double bytes, int threads);
 
 struct Bandwidth {
@@ -30,7 +30,7 @@ struct Bandwidth {
   double best() const { return copy > triad ? copy : triad; }
 };
 
-// What so many threads of the machine do at best.
+// The best rates of the machine on this many threads.
 struct MachineLimits {
   int threads = 1;
   std::array<Bandwidth, 3> level;  // by MemoryLevel
@@ -43,12 +43,12 @@ struct Machine {
   std::string processor;        // as the system names it
   std::string instruction_set;  // as Highway names it
   int lanes = 0;                // floats in its vectors
-  int cores = 0;                // that the system shows
+  int cores = 0;                // that the system reports
   CacheSizes caches;
 };
 Machine describe_machine();
 
-// Takes about ten times options.seconds. Nothing where options.stop was set.
+// Takes about ten times options.seconds. Nothing if options.stop was set.
 std::optional<MachineLimits> measure_limits(const CacheSizes& caches, int threads,
                                             const TimerOptions& options);
 

@@ -30,7 +30,7 @@ struct Trend {
   std::string probe;
   std::vector<Vec3> displacement;  // [m] (levels)
   // From the last three levels, u0, u1, u2 (two: order 1 is taken):
-  double order = 0.0;                // log2(|u1 - u0| / |u2 - u1|), NaN where nothing changes
+  double order = 0.0;                // log2(|u1 - u0| / |u2 - u1|), NaN if nothing changes
   Vec3 extrapolated = Vec3::Zero();  // Richardson's: u2 + (u2 - u1) / (2^p - 1) [m]
   double error = 0.0;                // estimate for the extrapolated value [m]
   bool converges = true;             // false: changes do not shrink, or by less than a quarter
@@ -44,14 +44,14 @@ struct ConvergeResult {
   std::vector<std::string> warnings;
 };
 
-// What Richardson's extrapolation says of displacements on meshes whose edges halve from one to the
-// next. The order p is kept within 1 and 2, what linear tets can have, for the extrapolation; the
-// error is |u2 - u1| / (2^p - 1) of which the extrapolation takes the larger part away (Roache 1994
-// multiplies by 1.25 for three meshes, by 3 for two; so does this).
+// Richardson's extrapolation of displacements on meshes whose edge length halves from one to the
+// next. For the extrapolation, the order p is limited to 1 to 2, the range of linear tets. The
+// error is |u2 - u1| / (2^p - 1), of which the extrapolation removes the larger part, times the
+// factor of Roache (1994): 1.25 for three meshes, 3 for two.
 Trend trend_of(std::string probe, std::vector<Vec3> displacement);
 
-// Rest states where the scene is static, else the end of the run. Throws Error(input) for a scene
-// without probes, and what building and running it throws.
+// Rest states if the scene is static, otherwise the end of the run. Throws Error(input) for a scene
+// without probes, and the errors of building and running it.
 ConvergeResult converge(const std::filesystem::path& file, const std::vector<std::string>& set,
                         const ConvergeOptions& options);
 

@@ -17,7 +17,7 @@ namespace sinew::study {
 
 class Experiment {
  public:
-  // Throws what sim::simulate throws.
+  // Throws the errors of sim::simulate.
   explicit Experiment(const Scene& scene);
 
   // Runs to the end. Returns false if `stop` was set before. Throws Error(diverged).
@@ -41,7 +41,7 @@ class Experiment {
   void watch_flight();
 
   Simulation simulation_;
-  sim::World& world_;  // its inside, and of that:
+  sim::World& world_;  // of simulation_; its parts:
   const Model& model_;
   const RunState& run_;
   std::vector<Vec3> force_;  // total at the end [N] (nodes)
