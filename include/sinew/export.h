@@ -1,4 +1,4 @@
-// Marks what a shared library of Sinew shows.
+// Marks the symbols that a shared library of Sinew exports.
 #pragma once
 
 #if defined(__GNUC__)

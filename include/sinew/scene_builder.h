@@ -1,8 +1,8 @@
 // A scene that is built in code.
 //
 // Each member of a description is the key of the same name in docs/scene-format.md, with the same
-// meaning, unit, default and range. What is absent (an empty text, an empty optional) takes that
-// default. Simulation checks a scene of a builder as it checks a file.
+// meaning, unit, default and range. A member without a value (an empty text, an empty optional)
+// takes that default. Simulation checks the scene of a builder like a scene file.
 //
 //   sinew::SceneBuilder scene;
 //   scene.add_body({.name = "slab", .shape = "box", .material = {.young = 5e3}});
@@ -22,8 +22,8 @@
 
 namespace sinew {
 
-// What a tissue is made of. `tissue` is the key `material`: a name such as "liver" whose values the
-// other members override.
+// The material of a body or region. `tissue` is the key `material`: a name such as "liver", whose
+// values the other members override.
 struct MaterialDescription {
   std::string tissue = {};
   std::string law = {};  // neo-hookean, calibrated, uniform, lloyd, vangelder
@@ -45,8 +45,8 @@ struct MaterialDescription {
   std::optional<double> volume_stiffness = {};
 };
 
-// Nodes of a body: those that meet every condition given. Places are in the world, as the body is
-// placed at the start.
+// Nodes of a body: those that meet every given condition. Coordinates are in the world, for the
+// body as placed at the start.
 struct SelectionDescription {
   struct Box {
     Point min = {0.0, 0.0, 0.0}, max = {0.0, 0.0, 0.0};  // [m]
@@ -77,8 +77,8 @@ struct KeyFrameDescription {
   std::optional<std::array<double, 9>> deform = {};  // of pins only, row by row
 };
 
-// A tet mesh in arrays. It is diagnosed and repaired like that of a file: tets are turned to
-// positive volume, nodes in no tet are dropped.
+// A tet mesh in arrays. It is diagnosed and repaired like a mesh file: tets are turned to positive
+// volume, nodes without a tet are dropped.
 struct MeshArrays {
   std::vector<Point> nodes = {};      // [m], or `scale` of the body metres (nodes)
   std::vector<Tet> tets = {};         // (tets)
@@ -99,7 +99,7 @@ struct RegionDescription {
   MaterialDescription material = {};
 };
 
-// One of `mesh`, `shape` and `arrays` says where the mesh comes from.
+// One of `mesh`, `shape` and `arrays` gives the mesh.
 struct BodyDescription {
   std::string name = {};
   std::string mesh = {};   // a file; a relative path starts at SimulationOptions::base
@@ -176,8 +176,9 @@ struct ProbeDescription {
   SelectionDescription select = {};
 };
 
-// A rigid thing that bodies may not enter. `soft` makes a sphere that presses by a stiffness of its
-// own choice, `stiffness` one of that stiffness; without either the obstacle is hard.
+// A rigid object that bodies cannot enter. `soft` makes a sphere that presses with a stiffness
+// derived from the bodies, `stiffness` one with that stiffness; without either the obstacle is
+// hard.
 struct ObstacleDescription {
   std::string name = {};
   std::string shape = {};  // as in a scene, docs/scene-format.md; empty: sphere, or mesh
@@ -208,7 +209,7 @@ struct ContactDescription {
   std::optional<double> friction = {}, restitution = {};
 };
 
-// What a scene says of its steps.
+// The steps of a simulation.
 struct SteppingDescription {
   std::string stepper = {};       // verlet, implicit, static, auto
   std::string scheme = {};        // sdirk2, backward-euler
@@ -222,9 +223,9 @@ struct SteppingDescription {
   std::optional<double> fps = {};  // the key output.fps: frames in a second of simulated time
 };
 
-// Collects a scene. Copies what it is given. Its functions throw Error(input) for a name that is
-// taken or cannot be one and for arrays of different lengths; values are checked by Simulation. A
-// builder that was moved from throws Error(usage). One thread at a time.
+// Collects a scene. Copies its arguments. Its functions throw Error(input) for a name that is taken
+// or not valid, and for arrays of different lengths; Simulation checks the values. A builder that
+// was moved from throws Error(usage). One thread at a time.
 class SINEW_API SceneBuilder {
  public:
   SceneBuilder();
@@ -248,7 +249,7 @@ class SINEW_API SceneBuilder {
   SceneBuilder& add_probe(const ProbeDescription& probe);
   SceneBuilder& add_obstacle(const ObstacleDescription& obstacle);
 
-  // The scene as TOML, all but the arrays: for a look at what was built.
+  // The scene as TOML without the arrays, for inspection.
   std::string toml() const;
 
  private:

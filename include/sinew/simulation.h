@@ -8,22 +8,22 @@
 //     const sinew::Wrench w = simulation.wrench(tool);
 //   }
 //
-// Errors. Every function throws sinew::Error where it cannot do what is asked, and then leaves the
-// simulation as it was: usage for a wrong call (a value that is not finite, an unknown name, the
-// handle of a removed thing or of another simulation, a simulation that was moved from), input for
+// Errors. Every function throws sinew::Error if it cannot do its task, and then leaves the
+// simulation unchanged: usage for a wrong call (a value that is not finite, an unknown name, the
+// handle of a removed object or of another simulation, a simulation that was moved from), input for
 // a scene or a value in it, unstable for a step above the stable one, io for a file. The one
 // exception is Error(diverged): the state became infinite. The simulation then returns to the state
 // at the end of an earlier frame, at most a frame (1/fps) and 1/60 s before. Nothing is printed.
 //
 // Threads. A Simulation may be used by one thread at a time, and by a different thread each time;
-// several may be used by several threads at once. interrupt() alone may be called at any time. A
-// Simulation shares nothing with another one but the worker threads of TBB.
+// several may be used by several threads at once. Only interrupt() may be called at any time.
+// Simulations share nothing but the worker threads of TBB.
 //
-// Results are the same bits for every number of threads, and those of `sinew run`.
+// Results have the same bits for every number of threads, and the bits of `sinew run`.
 //
-// Lifetime. A span stays valid until the next call of a function that is not const, and no longer
-// than the Simulation, which may be moved meanwhile. Handles are plain values: they stay valid
-// until the thing is removed, and in a Simulation that was moved.
+// Lifetime. A span is valid until the next call of a function that is not const, and no longer than
+// the Simulation, which may be moved meanwhile. Handles are plain values: they are valid until
+// their object is removed, also in a Simulation that was moved.
 #pragma once
 
 #include <sinew/error.h>
@@ -46,7 +46,7 @@ namespace sim {
 class World;
 }
 
-// Names a thing of one simulation. A default one names nothing.
+// Names an object of one simulation. A default handle names nothing.
 template <typename Kind>
 class Handle {
  public:
@@ -65,11 +65,12 @@ using GrabHandle = Handle<struct GrabKind>;
 using MaterialHandle = Handle<struct MaterialKind>;
 
 struct SimulationOptions {
-  // Threads that step it, from 1 to 1024. 0: it runs in the TBB arena of the thread that calls.
+  // Number of threads, from 1 to 1024. 0: the TBB arena of the calling thread.
   int threads = 0;
-  // Where relative paths of meshes start, for texts and builders; empty: the current folder.
+  // Start of relative mesh paths, for texts and builders; empty: the current folder.
   std::filesystem::path base = {};
-  // Values in place of the scene's, as the command line's --set: "body.liver.young=5e3".
+  // Values that override those of the scene, like --set on the command line:
+  // "body.liver.young=5e3".
   std::vector<std::string> set = {};
 };
 
@@ -84,17 +85,17 @@ struct BodyInfo {
 struct ProbeValue {
   std::string name;
   Point position = {0.0, 0.0, 0.0};      // mean of its nodes [m]
-  Point displacement = {0.0, 0.0, 0.0};  // of that since the rest shape [m]
+  Point displacement = {0.0, 0.0, 0.0};  // of that mean since the rest shape [m]
 };
 
 enum class EventKind {
-  inverted,         // there are inverted tets at the end of a frame; count: how many
-  diverged,         // the state is that at the end of an earlier frame again
-  stepper_changed,  // text: the stepper, and why
-  step_shortened,   // the body became stiffer: count: how many times within a frame
+  inverted,         // there are inverted tets at the end of a frame; count: their number
+  diverged,         // the simulation returned to the end of an earlier frame
+  stepper_changed,  // text: the stepper and the reason
+  step_shortened,   // the body became stiffer; count: reductions of the step within a frame
 };
 
-// What a host should know of and did not ask for.
+// An event that the host did not request.
 struct Event {
   EventKind kind = EventKind::inverted;
   double time = 0.0;  // of the simulation [s]
@@ -102,8 +103,8 @@ struct Event {
   std::string text;
 };
 
-// All that decides how a simulation goes on, in memory. bytes() may be stored and read by the same
-// version of Sinew.
+// Everything that decides how a simulation continues, in memory. bytes() may be stored, and read by
+// the same version of Sinew.
 class SINEW_API SavedState {
  public:
   SavedState() = default;
@@ -116,15 +117,15 @@ class SINEW_API SavedState {
 
 class SINEW_API Simulation {
  public:
-  // Reads a scene file (docs/scene-format.md). Error(io) where it cannot be read, Error(input) with
-  // file, line and column for what is wrong in it.
+  // Reads a scene file (docs/scene-format.md). Error(io) if it cannot be read, Error(input) with
+  // file, line and column for a fault in it.
   static Simulation from_file(const std::filesystem::path& file,
                               const SimulationOptions& options = {});
   // The same for a text, named "scene.toml" in messages.
   static Simulation from_text(std::string_view toml, const SimulationOptions& options = {});
   explicit Simulation(const SceneBuilder& scene, const SimulationOptions& options = {});
 
-  // A simulation that was moved from throws Error(usage) in every function but these, and may be
+  // A simulation that was moved from throws Error(usage) in every function but these. It may be
   // assigned to.
   Simulation(Simulation&& other) noexcept;
   Simulation& operator=(Simulation&& other) noexcept;
@@ -134,24 +135,24 @@ class SINEW_API Simulation {
 
   // ---- time ----
 
-  // Takes the next step that the scene asks for: of its dt, or of the length that dt = "auto"
-  // chooses. With stepper = "static": the rest state at the end of the next frame.
+  // Takes the next step of the scene: its dt, or the length that dt = "auto" chooses. With stepper
+  // = "static": the rest state at the end of the next frame.
   void step();
-  // Takes one step of `dt` > 0 [s], at most 10. Error(unstable) where explicit steps may not be so
-  // long; see stable_step().
+  // Takes one step of `dt` [s], above 0 and at most 10. Error(unstable) if an explicit step may not
+  // be that long; see stable_step().
   void step(double dt);
-  // Takes steps until `seconds` more have passed, from 0 to 3600: to the rounded bit where dt =
-  // "auto"; with a given dt the whole steps that come nearest, and what is left counts in the next
-  // call. True: done; false: interrupted.
+  // Takes steps until `seconds` more have passed, from 0 to 3600. With dt = "auto" it ends exactly
+  // there. With a given dt it takes the nearest number of whole steps, and the remainder counts in
+  // the next call. Returns true if done, false if interrupted.
   bool advance(double seconds);
-  // Lets a step() or advance() of another thread end after the step under way, or the next one
-  // where none is. The one function that may be called from any thread at any time.
+  // Ends a step() or advance() of another thread after the current step; without one, it ends the
+  // next one. The only function that may be called from any thread at any time.
   void interrupt() noexcept;
 
   double time() const;         // [s]
   std::int64_t steps() const;  // taken
   double last_step() const;    // [s]; 0 before the first
-  // The longest explicit step that is stable, when last looked at [s]; infinite for other steppers.
+  // The longest stable explicit step at the last estimate [s]; infinite for other steppers.
   double stable_step() const;
   std::string stepper() const;  // verlet, implicit, static
 
@@ -159,95 +160,97 @@ class SINEW_API Simulation {
 
   std::span<const Point> positions() const;       // [m] (nodes)
   std::span<const Point> rest_positions() const;  // [m] (nodes)
-  // The way of the last step over its length [m/s] (nodes).
+  // The displacement of the last step over its length [m/s] (nodes).
   std::span<const Point> velocities() const;
-  // The force on each node [N] (nodes). At the positions as they are: of the material, and on free
-  // nodes of gravity, loads, soft obstacles and grabs. Of the last step, 0 before it and after a
-  // change that builds the model anew: of contacts and of the ground. Not of limits, ropes and
-  // rods. Computed by the first call after a change, which costs about as much as a step.
+  // The force on each node [N] (nodes): at the current positions that of the material, and on free
+  // nodes those of gravity, loads, soft obstacles and grabs; of the last step, those of contacts,
+  // the ground included (0 before the first step and after a change that builds the model again).
+  // Strain limits and distance constraints are not included. Computed by the first call after a
+  // change, which costs about as much as a step.
   std::span<const Point> forces() const;
   std::span<const double> masses() const;        // [kg] (nodes)
   std::span<const Tet> tets() const;             // node ids (tets)
   std::span<const Triangle> surface() const;     // node ids, of all bodies
   std::span<const BodyInfo> bodies() const;      // in the scene's order
-  Index inverted_tets() const;                   // tets of negative volume now
+  Index inverted_tets() const;                   // current number of tets with negative volume
   Index nearest_node(const Point& place) const;  // of the surface
   std::vector<ProbeValue> probes() const;
 
   // ---- obstacles ----
 
-  // The obstacle of that name. Error(usage) with the names there are.
+  // The obstacle of that name. Error(usage) with the valid names.
   ObstacleHandle obstacle(std::string_view name) const;
   std::vector<std::string> obstacle_names() const;
-  // Adds an obstacle between steps; times of a path are those of the simulation. Error(input) as
-  // for a scene; a name may not be one that is there. Builds the model anew: as long as loading.
+  // Adds an obstacle between steps; its path uses the time of the simulation. Error(input) as for a
+  // scene; the name must be new. Builds the model again, which takes as long as loading.
   ObstacleHandle add_obstacle(const ObstacleDescription& obstacle);
-  // Puts another one in its place; the handle stays. As long as add_obstacle.
+  // Replaces an obstacle; the handle stays valid. Takes as long as add_obstacle.
   void change(ObstacleHandle obstacle, const ObstacleDescription& description);
   void remove(ObstacleHandle obstacle);
-  // From where it is to `pose`, straight and at constant speed, over the next step() or advance();
-  // then it stays. Takes the place of the path of the scene.
+  // Moves it from its current pose to `pose`, straight and at constant speed, over the next step()
+  // or advance(); then it stays there. Replaces the path of the scene.
   void move(ObstacleHandle obstacle, const RigidPose& pose);
-  // Puts it there at once, without a speed.
+  // Puts it at the pose at once, without a speed.
   void place(ObstacleHandle obstacle, const RigidPose& pose);
   RigidPose pose(ObstacleHandle obstacle) const;
-  // What the bodies do to it, the torque about `about` [m] or about its centre. Of a hard obstacle
-  // the mean over the last step, 0 before it; of a soft one as the positions are.
+  // The force of the bodies on it, and the torque about `about` [m] or about its centre. Hard
+  // obstacle: the mean over the last step, 0 before the first; soft obstacle: at the current
+  // positions.
   Wrench wrench(ObstacleHandle obstacle, const Point& about) const;
   Wrench wrench(ObstacleHandle obstacle) const;
-  // Places that touch it: inside, or outside by less than a thousandth of the longest edge of the
-  // bodies' surface. `contacts` is emptied first.
+  // Points of the bodies that touch it: inside, or outside by less than a thousandth of the longest
+  // edge of the bodies' surface. Replaces the content of `contacts`.
   void contacts(ObstacleHandle obstacle, std::vector<ContactPoint>& contacts) const;
   std::vector<ContactPoint> contacts(ObstacleHandle obstacle) const;
-  double depth(ObstacleHandle obstacle) const;  // of the deepest place inside [m]; 0: none
+  double depth(ObstacleHandle obstacle) const;  // largest penetration [m]; 0: none
 
   // ---- pins ----
 
   PinHandle pin(std::string_view name) const;
   std::vector<std::string> pin_names() const;
-  // To `motion` since the start, as an obstacle is moved.
+  // Moves the pin to `motion` since the start, like an obstacle.
   void move(PinHandle pin, const RigidMotion& motion);
   RigidMotion motion(PinHandle pin) const;
-  // What its nodes load the pin with: their forces() and their weight; the torque about `about`
-  // [m].
+  // The load of its nodes on the pin: their forces(), contacts included, and their weight; the
+  // torque about `about` [m].
   Wrench wrench(PinHandle pin, const Point& about) const;
 
   // ---- grabs: springs that pull a patch of tissue ----
 
-  // Holds the nodes of the node's body within `radius` [m] > 0 of it, where they are; as stiff as
-  // the tissue under it.
+  // Holds the nodes of the node's body within `radius` [m] > 0 of it at their current places, with
+  // the stiffness of the tissue there.
   GrabHandle grab(Index node, double radius);
-  // Where the middle of the patch is to be [m]; at once.
+  // Sets the target of the patch's centre [m], at once.
   void move(GrabHandle grab, const Point& target);
   Point target(GrabHandle grab) const;
-  Point force(GrabHandle grab) const;  // that it pulls the tissue with [N]
+  Point force(GrabHandle grab) const;  // on the tissue [N]
   void release(GrabHandle grab);
-  std::vector<GrabHandle> grabs() const;  // those that hold something
+  std::vector<GrabHandle> grabs() const;  // those not released
 
-  // ---- what else may change between steps ----
+  // ---- materials and gravity ----
 
   // The material of a body, or of one of its regions.
   MaterialHandle material(std::string_view body, std::string_view region = {}) const;
-  // Gives the values that are there; the others stay. Error(input) for one that cannot be.
-  // Builds the model anew: as long as loading. Positions stay.
+  // Sets the given values; the others do not change. Error(input) for a value that is not valid.
+  // Builds the model again, which takes as long as loading; positions do not change.
   void change(MaterialHandle material, const MaterialDescription& description);
-  void set_gravity(const Point& gravity);  // [m/s2], of at most 1e4
+  void set_gravity(const Point& gravity);  // [m/s2], at most 1e4
   Point gravity() const;
 
   // ---- states ----
 
   SavedState save() const;
-  // Goes on from a state of this simulation or of another of the same scene: the same bits as
-  // without a break. Error(input) for a state of another model, or that is damaged.
+  // Continues from a state of this simulation or of another one of the same scene, with the same
+  // bits as without the interruption. Error(input) for a state of another model, or a damaged one.
   void restore(const SavedState& state);
-  // 16 hexadecimal digits over positions, velocities, time and steps: those `sinew run` prints.
+  // 16 hexadecimal digits over positions, velocities, time and steps, as `sinew run` prints.
   std::string hash() const;
 
-  // ---- what happened ----
+  // ---- events and warnings ----
 
-  // Takes the events since the last call; at most 1000 are kept, the newest.
+  // Returns and clears the events since the last call; the newest 1000 are kept.
   std::vector<Event> take_events();
-  // What is worth knowing about the scene: repaired meshes, sizes that look wrong, overlaps.
+  // Warnings about the scene: repaired meshes, implausible sizes, overlaps.
   std::span<const std::string> warnings() const;
 
  private:

@@ -1,4 +1,4 @@
-// Everything of the public interface.
+// The whole public interface.
 #pragma once
 
 #include <sinew/error.h>

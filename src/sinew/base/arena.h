@@ -1,4 +1,4 @@
-// Threads of its own for the loops of base/parallel.h, beside those of others in the same process.
+// Own threads for the loops of base/parallel.h, besides those of other owners in the same process.
 #pragma once
 
 #include <tbb/task_arena.h>
@@ -9,8 +9,8 @@ namespace sinew {
 
 class Arena {
  public:
-  // At most `threads` threads run the loops of what run() is given, the calling one among them. 0:
-  // the arena of the calling thread, whatever it is.
+  // At most `threads` threads, the caller included, run the loops of the function given to run().
+  // 0: the arena of the calling thread.
   explicit Arena(int threads)
       : arena_(threads > 0 ? std::make_unique<tbb::task_arena>(threads) : nullptr) {}
 

@@ -1,4 +1,4 @@
-// Wall time: what runs are timed with. Never part of a result.
+// Wall time of runs. Never part of a result.
 #pragma once
 
 #include <chrono>

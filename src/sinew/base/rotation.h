@@ -1,5 +1,5 @@
-// Rotations that need a decomposition: compiled once, because Eigen's templates of them take seconds
-// in every file that uses one.
+// Rotations that need a decomposition. They are compiled once, because Eigen's templates for them
+// take seconds in every file that uses one.
 #pragma once
 
 #include "sinew/base/vec.h"

@@ -2,7 +2,7 @@
 //
 // An enum E has words where its own namespace has a function
 //   constexpr std::array<Word<E>, N> words_of(E)
-// whose argument only picks the table. Values without a word are none that a user may write.
+// whose argument only selects the table. Values without a word cannot be written by a user.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@ struct Word {
   std::string_view word;
 };
 
-// The word of a value; empty where it has none.
+// The word of a value; empty if it has none.
 template <typename E>
 constexpr std::string_view word_of(E value) {
   for (const auto& [known, word] : words_of(E{}))

@@ -1,6 +1,6 @@
-// A tokeniser over a whole file in memory: words and numbers divided by blanks, with the line and
-// column of each. Every reader of this room is built on it, so every reader's errors name the
-// place, what was expected, what stands there, and what to do.
+// A tokeniser over a whole file in memory: words and numbers separated by blanks, each with its
+// line and column. Every reader of this room uses it, so all their errors name the place, the
+// expected value, the value found, and the remedy.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace sinew::io {
 
-// What divides words: space, and tab to carriage return.
+// The separators of words: space, and tab to carriage return.
 constexpr bool is_blank(char c) {
   return c == ' ' || (c >= '\t' && c <= '\r');
 }
@@ -20,8 +20,8 @@ constexpr bool is_blank(char c) {
 // The remedy for a file that ends too early.
 inline constexpr const char* cut_short = "the file was cut short: fetch or export it again";
 
-// What the reader is about to read, for its errors: "x of vertex 12", "the number of vertices".
-// A plain value, put into words only when something is wrong.
+// The next expected value, for errors: "x of vertex 12", "the number of vertices". A plain value
+// that becomes text only in an error.
 struct Wanted {
   std::string_view value;    // "x"
   std::string_view of = {};  // "vertex"
@@ -34,8 +34,8 @@ class TextReader {
   // its line, 0 for none.
   TextReader(std::string_view text, std::string file, char comment);
 
-  // Where the reader is, for its errors: a name ("section Vertices") and how one entry is
-  // written ("x y z label"). Both must be literals or outlive the reader.
+  // The current part of the file, for errors: a name ("section Vertices") and the form of one entry
+  // ("x y z label"). Both must be literals or outlive the reader.
   void set_part(std::string_view part, std::string_view layout);
 
   bool at_end();            // only blanks and comments are left
@@ -61,11 +61,11 @@ class TextReader {
   std::string_view take(std::size_t bytes, const Wanted& wanted);
   std::size_t offset() const { return static_cast<std::size_t>(at_ - text_.data()); }
   std::size_t remaining() const { return static_cast<std::size_t>(end_ - at_); }
-  // Moves to the first place of what at or after here; false if there is none.
+  // Moves to the next occurrence of `what`, starting here; false if there is none.
   bool find(std::string_view what);
-  // Moves on to a place at or after here; errors then point there until a value is read.
+  // Moves forward to a place; errors point there until a value is read.
   void go_to(std::size_t place);
-  // Lines mean nothing in a file with binary blocks: errors then name the byte.
+  // A file with binary blocks has no meaningful lines: errors name the byte instead.
   void set_binary() { binary_ = true; }
   bool binary() const { return binary_; }
 
@@ -73,7 +73,7 @@ class TextReader {
 
   // Errors that point at the last value read.
   [[noreturn]] void fail(std::string message, std::string remedy) const;
-  // An error of the file as a whole: something that it lacks.
+  // An error of the whole file: a missing part.
   [[noreturn]] void fail_file(std::string message, std::string remedy) const;
   // "expected WANTED (a whole number), found "abc"".
   [[noreturn]] void fail_expected(const Wanted& wanted, std::string_view kind,
@@ -103,7 +103,7 @@ class TextReader {
 
 // "x of vertex 12".
 std::string to_text(const Wanted& wanted);
-// A word of a file, quoted for a message: bytes that do not print become \xNN, long ones are cut.
+// A word of a file, quoted for a message: non-printing bytes become \xNN, long words are truncated.
 std::string quoted(std::string_view word);
 
 }  // namespace sinew::io

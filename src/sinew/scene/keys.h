@@ -1,5 +1,5 @@
-// Every key that a scene may have: one table says its type, unit, default and range. The reader
-// (reader.h) checks against it, messages quote it, and a test holds docs/scene-format.md to it.
+// Every key of a scene, in one table with type, unit, default and range. The reader (reader.h)
+// checks against it, messages quote it, and a test compares docs/scene-format.md with it.
 #pragma once
 
 #include <limits>
@@ -29,9 +29,9 @@ enum class KeyType {
 struct Interval {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
-  bool low_open = false;          // low itself is outside
-  bool high_open = false;         // high itself is outside
-  bool infinity_allowed = false;  // "inf" means: none
+  bool low_open = false;          // low itself is excluded
+  bool high_open = false;         // high itself is excluded
+  bool infinity_allowed = false;  // "inf" means no limit
 
   bool contains(double value) const;
   std::string text() const;  // "> 0", "from 0 to 1", "in (-1, 0.5)"; empty: any finite number
@@ -41,20 +41,20 @@ struct Key {
   std::string_view name;
   KeyType type;
   std::string_view unit;           // "m"; empty: none
-  std::string_view default_value;  // as it would be written; empty: no default
+  std::string_view default_value;  // as written in a scene; empty: no default
   Interval range;
   std::string_view words;  // "uniform lloyd vangelder"; of KeyType::word and number_or_word
 };
 
 struct KeyTable {
   std::string_view name;   // "body"; the heading that documents it
-  std::string_view title;  // "[body.NAME]": how messages and the document call it
+  std::string_view title;  // "[body.NAME]": its name in messages and in the document
   std::vector<Key> keys;
 
   const Key* find(std::string_view key) const;
 };
 
-// The tables by what they hold.
+// The tables by their content.
 struct KeyTables {
   KeyTable scene, body, material, region, motion, key_frame, select, box, sphere, half_space, pin,
       attachment, distance, force, probe, obstacle, ground, contact, output;
@@ -63,10 +63,10 @@ struct KeyTables {
 };
 const KeyTables& key_tables();
 
-// "number", "3 numbers", "one of uniform, lloyd": what a value of this key has to be.
+// The expected value of a key: "number", "3 numbers", "one of uniform, lloyd".
 std::string type_text(const Key& key);
 
-// "; did you mean 'young'?" for the end of a message; empty where no known word is near.
+// "; did you mean 'young'?" for the end of a message; empty if no known word is near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string>& known);
 
 // The words of a list separated by spaces.

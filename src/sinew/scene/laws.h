@@ -32,7 +32,7 @@ inline std::vector<std::string> law_choice_names() {
   return names;
 }
 
-// Null if there is none of that name.
+// Null if there is no law of that name.
 inline const LawChoice* find_law(const std::string& name) {
   for (const LawChoice& law : law_choices())
     if (law.name == name) return &law;

@@ -13,7 +13,7 @@ NearestNode::NearestNode(std::span<const Vec3> x, std::vector<Index> nodes)
   });
 }
 
-// Outwards from the position of the point's x, until x alone is too far.
+// Searches outwards from the point's x until x alone is farther than the nearest node.
 Index NearestNode::operator()(const Vec3& point) const {
   const auto start = std::lower_bound(nodes_.begin(), nodes_.end(), point.x(),
                                       [&](Index node, double x) { return x_[uz(node)].x() < x; });

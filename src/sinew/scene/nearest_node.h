@@ -1,4 +1,4 @@
-// The nearest of a list of points, found without a test of all of them.
+// The nearest of a list of points, without a test of every point.
 #pragma once
 
 #include <span>
@@ -13,7 +13,7 @@ class NearestNode {
   // The points x[n] of `nodes`, which must not be empty; x must outlive this object.
   NearestNode(std::span<const Vec3> x, std::vector<Index> nodes);
 
-  // The node nearest to the point; of equals the lowest.
+  // The node nearest to the point; of several the lowest id.
   Index operator()(const Vec3& point) const;
 
  private:

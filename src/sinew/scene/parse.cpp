@@ -67,8 +67,8 @@ void refuse_shared_columns(const Scene& scene, const Reader& root) {
                   "they share the table probes.csv: rename one of them");
 }
 
-// A step cut off by its budget is stable because it still lowers the potential of backward Euler;
-// SDIRK2 builds its second part on a first one that has come to its end.
+// A step that its budget ends early is stable because it still lowers the potential of backward
+// Euler. SDIRK2 needs a converged first stage for its second one.
 void parse_budget(const Reader& root, Scene& scene) {
   if (scene.stepper != StepperKind::implicit && scene.stepper != StepperKind::automatic)
     root.fail("budget_ms",
@@ -131,7 +131,7 @@ Scene parse_root(const DocValue& document) {
   return scene;
 }
 
-// Sets a key of the top level, as its first one where it is new.
+// Sets a key of the top level; a new key becomes the first one.
 void set_text(DocValue& document, const std::string& key, const std::string& text) {
   DocEntry entry{key, {}, document.where};
   entry.value.type = DocValue::Type::text;
@@ -159,8 +159,8 @@ Scene parse_tree(DocValue document, const std::string& file_name, const std::fil
   check_scene_name(scene.name, name != nullptr ? name->where : Location{file_name, 0, 0});
   scene.file = file_name;
   scene.base = (scene.base.empty() ? base : base / scene.base).string();
-  // The document says what runs, not where its files lie: the same scene has the same document in
-  // every folder and under every file name.
+  // The document describes the simulation, not the place of its files: the same scene has the same
+  // document in every folder and under every file name.
   std::erase_if(document.entries, [](const DocEntry& e) { return e.key == "base"; });
   set_text(document, "name", scene.name);
   scene.document = write_document(document);

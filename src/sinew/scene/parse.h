@@ -28,20 +28,20 @@ SceneOutput parse_output(const DocValue& value);
 // parse_scene() for a tree.
 Scene parse_tree(DocValue document, const std::string& file_name, const std::filesystem::path& base,
                  const std::vector<std::string>& overrides);
-// The whole text of a file; `kind` names it in messages: "scene".
+// The text of a file; `kind` names it in messages: "scene".
 std::string read_scene_text(const std::filesystem::path& file, std::string_view kind);
 
-// Throws where the table lacks a key that it cannot do without.
+// Throws if the table lacks a required key.
 void require(const Reader& reader, std::string_view key);
-// The selection under `key` of the reader's table, which has to be there.
+// The selection under `key` of the reader's table, which must exist.
 Selection parse_selection(const Reader& reader, const std::string& key);
 // The keys path, smooth and pivot.
 Path parse_motion(const Reader& reader, bool& pivot_given);
-// The material keys of a table that has them, on top of what `base` says.
+// The material keys of a table; those that it lacks keep the values of `base`.
 Material parse_material(const Reader& reader, const Material& base);
-// The name of a body that the scene has; the only one's where the key is absent.
+// The name of an existing body; without the key, that of the only body.
 std::string parse_body_name(const Reader& reader, std::string_view key, const BodyNames& bodies);
-// A point that must not be 0, as a unit vector; `otherwise` where the key is absent.
+// A point other than 0, as a unit vector; `otherwise` if the key is absent.
 Vec3 parse_direction(const Reader& reader, std::string_view key, const Vec3& otherwise);
 // The key rotation: degrees about the fixed axes x, then y, then z; or a quaternion w, x, y, z.
 Eigen::Quaterniond parse_rotation(const Reader& reader);

@@ -29,7 +29,7 @@ constexpr std::array<ShapeKey, 8> shape_keys = {{
     {"resolution", "sphere ellipsoid cylinder hollow_sphere"},
 }};
 
-// A key that would have no effect is a mistake.
+// A key without effect is an error.
 void refuse_shape_keys_that_do_not_fit(const Reader& reader, const SceneBody& body) {
   const std::string_view shape = word_of(body.shape);
   const std::string source =
@@ -113,7 +113,7 @@ void refuse_shared_labels(const SceneBody& body) {
     }
 }
 
-// The key material: what the table states as well overrides it.
+// The key material: values in the same table override those of the tissue.
 void parse_tissue(const Reader& reader, Material& m) {
   std::string name;
   if (!reader.text("material", name)) return;

@@ -16,7 +16,7 @@ bool has_word(std::string_view words, std::string_view word) {
   return std::find(all.begin(), all.end(), word) != all.end();
 }
 
-// The shapes that have a key, and whether `shape` has it or cannot do without it.
+// The shapes that have a key, and whether `shape` has or requires it.
 struct KeyUse {
   std::vector<std::string_view> shapes;
   bool has = false;
@@ -36,7 +36,7 @@ KeyUse use_of(std::string_view key, std::string_view shape) {
   return use;
 }
 
-// The shape of a word of the list, with the sizes that the scene gives.
+// The shape for a word, with the sizes of the scene.
 Shape parse_shape(const Reader& reader, std::string_view word) {
   shapes::Keys keys;
   reader.number("radius", keys.radius);
@@ -49,7 +49,7 @@ Shape parse_shape(const Reader& reader, std::string_view word) {
   return out;
 }
 
-// A key that would have no effect is a mistake, and so is one that is missing.
+// A key without effect is an error, and so is a missing one.
 void check_keys(const Reader& reader, std::string_view shape) {
   std::vector<std::string_view> keys;
   for (const Key& key : key_tables().obstacle.keys) keys.push_back(key.name);
@@ -61,7 +61,7 @@ void check_keys(const Reader& reader, std::string_view shape) {
           ErrorKind::input,
           fmt::format("{} has no '{}', which shape = \"{}\" needs", reader.name(), key, shape),
           fmt::format("add {} (docs/scene-format.md)", key), reader.where());
-    if (!reader.has(key) || use.has || use.shapes.empty()) continue;  // no shape's: all have it
+    if (!reader.has(key) || use.has || use.shapes.empty()) continue;  // empty: a key of every shape
     const std::string message =
         fmt::format("{} does not go with shape = \"{}\"", reader.called(key), shape);
     if (key == "stiffness")
@@ -72,7 +72,8 @@ void check_keys(const Reader& reader, std::string_view shape) {
   }
 }
 
-// From `axis` or `normal`, which its own axis `own` is turned to, or from `rotation`.
+// The rotation: from `axis` or `normal`, to which the shape's own axis `own` is turned, or from
+// `rotation`.
 Eigen::Quaterniond parse_turn(const Reader& reader, std::string_view key, const Vec3& own) {
   if (!reader.has(key)) return parse_rotation(reader);
   if (reader.has("rotation"))

@@ -36,7 +36,7 @@ ScenePin parse_pin(const std::string& name, const DocValue& value, const BodyNam
 
 namespace {
 
-// Glue is a tie of places, no spring.
+// Refuses the keys of springs for glue, which ties nodes to points.
 void refuse_what_is_no_glue(const Reader& reader) {
   if (!reader.has("to_body"))
     reader.fail("within",

@@ -23,10 +23,10 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Tets smaller than this have no mass to speak of [m3].
+// Smaller tets have a negligible mass [m3].
 constexpr double kSmallestTet = 1e-60;
 
-// The path as a user would write it: from the current folder where it lies below that.
+// The path for messages: relative to the current folder if it is below that.
 fs::path shown(const fs::path& path) {
   std::error_code failed;
   const fs::path here = fs::current_path(failed);
@@ -55,10 +55,10 @@ TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source
   }
   const fs::path path = fs::path(scene.base) / body.mesh;
   std::error_code failed;
-  const fs::path tetgen = path.string() + ".node";  // TetGen's pair goes by its stem
+  const fs::path tetgen = path.string() + ".node";  // TetGen's pair is named by its stem
   if (!fs::exists(path, failed) && !fs::exists(tetgen, failed)) refuse_missing(body, path);
   source = shown(path).string();
-  // mesh_size is in metres, the file is not yet.
+  // mesh_size is in metres; read_filled takes it in the file's unit.
   if (is_filled(path)) {
     return read_filled(source, body.mesh_size / body.scale, body.mesh_where, body.fit);
   }
@@ -91,7 +91,7 @@ TetMesh make_shape(const SceneBody& body) {
   throw Error(ErrorKind::internal, "a body without a mesh and a shape");
 }
 
-// Diagnoses, repairs, and notes what was found.
+// Diagnoses and repairs the mesh, and notes the faults.
 void make_sound(PlacedBody& placed) {
   const auto in_file = static_cast<std::size_t>(placed.mesh.node_count());
   const bool is_file = !placed.body->mesh.empty();
@@ -110,7 +110,7 @@ void make_sound(PlacedBody& placed) {
     placed.node_of_file[static_cast<std::size_t>(report.original_node[i])] = static_cast<Index>(i);
 }
 
-// The ids of a surface's file are those of its vertices: each stands for the node nearest to it.
+// Ids of a surface file refer to its vertices: each stands for the node nearest to it.
 void take_ids_of_surface(PlacedBody& placed) {
   const SceneBody& body = *placed.body;
   if (body.shape != BodyShape::file || !io::is_surface_name(body.mesh)) return;
@@ -134,7 +134,7 @@ void refine(PlacedBody& placed) {
   for (int level = 0; level < body.refine; ++level) placed.mesh = subdivide(placed.mesh);
 }
 
-// Of the volume, in the mesh's unit.
+// Centroid of the volume, in the mesh's unit.
 Vec3 centroid(const TetMesh& mesh) {
   Vec3 moment = Vec3::Zero();
   double volume = 0.0;

@@ -1,4 +1,4 @@
-// One body of a scene with its mesh read or made, repaired, scaled and placed in the world.
+// One body of a scene: its mesh is read or made, repaired, scaled and placed in the world.
 #pragma once
 
 #include <string>
@@ -9,7 +9,7 @@
 
 namespace sinew {
 
-inline constexpr double largest_place = 1e9;  // of a coordinate [m]
+inline constexpr double largest_place = 1e9;  // largest coordinate [m]
 
 struct PlacedBody {
   const SceneBody* body = nullptr;
@@ -25,8 +25,9 @@ struct PlacedBody {
   double diagonal() const { return (high - low).norm(); }
 };
 
-// x = position + R (scale X - origin). Error(input) where the mesh is missing, cannot be used
-// (mesh/doctor.h), or is placed so large, so small or so far off that its tets lose their volume.
+// x = position + R (scale X - origin). Error(input) if the mesh is missing, cannot be used
+// (mesh/doctor.h), or is so large, so small or so far from the origin that its tets lose their
+// volume.
 PlacedBody place(const Scene& scene, const SceneBody& body);
 
 }  // namespace sinew

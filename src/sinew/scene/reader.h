@@ -1,5 +1,5 @@
-// Reads a table of a scene by its key table (keys.h): unknown keys, wrong types and values out of
-// range are Error(input) with file, line, column and what was expected.
+// Reads a table of a scene by its key table (keys.h). Unknown keys, wrong types and values out of
+// range are Error(input) with file, line, column and the expected value.
 #pragma once
 
 #include <array>
@@ -19,17 +19,17 @@ namespace sinew {
 
 class Reader {
  public:
-  // `name` is how messages call this table: "[body.beam]", "'select' of [pin.end]". Throws for a
-  // value that is no table and for keys that none of `tables` has.
+  // `name` stands for this table in messages: "[body.beam]", "'select' of [pin.end]". Throws if the
+  // value is not a table, and for keys that none of `tables` has.
   Reader(const DocValue& value, std::string name, std::initializer_list<const KeyTable*> tables);
 
   const std::string& name() const { return name_; }
   const Location& where() const { return table_.where; }
   bool has(std::string_view key) const { return table_.find(key) != nullptr; }
-  // Where the key's value stands; the table's own place if there is none.
+  // The place of the key's value; that of the table if there is no such key.
   Location where(std::string_view key) const;
 
-  // Each leaves `out` as it is, and returns false, where the key is absent.
+  // Each returns false and does not change `out` if the key is absent.
   bool boolean(std::string_view key, bool& out) const;
   bool integer(std::string_view key, int& out) const;
   bool integer(std::string_view key, std::optional<int>& out) const;
@@ -42,7 +42,7 @@ class Reader {
   bool cells(std::string_view key, std::array<int, 3>& out) const;
   bool integers(std::string_view key, std::vector<int>& out) const;
 
-  // The word of a KeyType::word or number_or_word; absent where the value is a number or missing.
+  // The word of a KeyType::word or number_or_word; absent if the value is a number or missing.
   std::optional<std::string> word(std::string_view key) const;
   // The same as the enum that the word stands for (base/words.h).
   template <typename E>
@@ -52,14 +52,14 @@ class Reader {
     out = value_of<E>(*text).value_or(out);
     return true;
   }
-  // The numbers of a point, rotation or matrix, in the unit of the key table; empty where absent.
+  // The numbers of a point, rotation or matrix, in the unit of the key table; empty if absent.
   std::vector<double> numbers(std::string_view key) const;
-  // A table within this one; null where absent.
+  // A table within this one; null if absent.
   const DocValue* table(std::string_view key) const;
-  // The tables of an array; empty where absent.
+  // The tables of an array; empty if absent.
   std::vector<const DocValue*> tables(std::string_view key) const;
 
-  // "'young' in [body.beam]": how messages name a key.
+  // The name of a key in messages: "'young' in [body.beam]".
   std::string called(std::string_view key) const;
   // Throws Error(input) at the key's value.
   [[noreturn]] void fail(std::string_view key, const std::string& message,
@@ -68,7 +68,7 @@ class Reader {
  private:
   const Key& key_of(std::string_view key) const;
   void refuse_unknown() const;
-  // What a message says about a value that cannot be used.
+  // The remedy for a value that cannot be used.
   std::string hint(const Key& key) const;
   [[noreturn]] void wrong_type(const Key& key, const DocValue& value) const;
   double in_range(const Key& key, double value, const DocValue& where) const;

@@ -35,7 +35,7 @@ io::SurfaceSoup read_soup(const Scene& scene, const SceneObstacle& o) {
   return io::read_surface(path);
 }
 
-// Vertices in the same place are one: STL files name every corner anew.
+// Merges coincident vertices: STL files list every corner separately.
 void weld(const io::SurfaceSoup& soup, RigidMesh& mesh) {
   std::map<std::array<double, 3>, Index> known;
   std::vector<Index> as;
@@ -53,7 +53,7 @@ void weld(const io::SurfaceSoup& soup, RigidMesh& mesh) {
   }
 }
 
-// Only those that a triangle has.
+// Drops vertices that no triangle uses.
 void drop_loose_vertices(RigidMesh& mesh) {
   std::vector<Index> as(mesh.vertices.size(), -1);
   std::vector<Vec3> kept;
@@ -69,7 +69,8 @@ void drop_loose_vertices(RigidMesh& mesh) {
   mesh.vertices = std::move(kept);
 }
 
-// Two triangles that go along an edge in the same direction have their outsides on different sides.
+// If two triangles run along a common edge in the same direction, their outsides are on different
+// sides.
 void check_winding(const SceneObstacle& o, const RigidMesh& mesh) {
   std::set<Edge> directed;
   for (const Triangle& t : mesh.triangles)

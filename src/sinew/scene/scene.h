@@ -1,5 +1,5 @@
-// A scene as its file says it: validated values in SI units, nothing built yet.
-// Every member is documented with unit, default and range in docs/scene-format.md.
+// The content of a scene file: validated values in SI units, without meshes or a Model.
+// docs/scene-format.md documents every member with unit, default and range.
 #pragma once
 
 #include <array>
@@ -27,8 +27,7 @@ namespace io {
 struct SurfaceSoup;
 }
 
-// Meshes that a scene built in code holds in memory, by what its keys `mesh` say in place of a file
-// name.
+// Meshes that a scene built in code holds in memory, by the value of the key `mesh`.
 struct GivenMeshes {
   std::map<std::string, std::shared_ptr<const TetMesh>> bodies;
   std::map<std::string, std::shared_ptr<const io::SurfaceSoup>> obstacles;
@@ -45,7 +44,7 @@ constexpr std::array<Word<BodyShape>, 6> words_of(BodyShape) {
            {BodyShape::hollow_sphere, "hollow_sphere"}}};
 }
 
-// Where the nodes of a body start a run from (scene/start.h).
+// Positions of a body's nodes at the start of a run (scene/start.h).
 enum class Start { rest, flat, inverted, random };
 constexpr std::array<Word<Start>, 4> words_of(Start) {
   return {{{Start::rest, "rest"},
@@ -54,8 +53,8 @@ constexpr std::array<Word<Start>, 4> words_of(Start) {
            {Start::random, "random"}}};
 }
 
-// Nodes of a body: those that meet every condition given. Places are in the world, as the body is
-// placed at the start, in metres.
+// Nodes of a body: those that meet every given condition. Coordinates are in the world [m], for the
+// body as placed at the start.
 struct Selection {
   struct Box {
     Vec3 min, max;
@@ -89,14 +88,14 @@ struct Selection {
 
 struct SceneRegion {
   std::string name;
-  std::vector<int> labels;  // mesh labels it covers
-  Material material;        // the body's, with what the region overrides
+  std::vector<int> labels;  // labels of the mesh
+  Material material;        // the body's, with the values that the region overrides
   Location where;           // of the labels
 };
 
 struct SceneBody {
   std::string name;
-  // Where the mesh comes from: a file or a shape.
+  // Source of the mesh: a file or a shape.
   std::string mesh;                       // path, relative to the scene file; empty: a shape
   double mesh_size = 0.0;                 // of surfaces and images: mean edge [m]; 0: sinew-mesh's
   std::optional<Vec3> fit;                // sides of the box that the file is stretched to, each
@@ -146,13 +145,13 @@ struct SceneAttachment {
   std::optional<Selection> to_select;  // absent: the other body's surface
   std::optional<double> within;        // [m] glue: of nodes no further than this from the surface
   double stiffness = 100.0;            // [N/m] of each spring
-  bool stiffness_given = false;        // else that of glue goes by what the nodes resist with
-  double damping = 0.0;                // [N s/m] of each spring
-  std::optional<double> rest_length;   // [m]; absent: the distance at the start
+  bool stiffness_given = false;  // otherwise ten times the stiffness at the nodes (scene/glue.h)
+  double damping = 0.0;          // [N s/m] of each spring
+  std::optional<double> rest_length;  // [m]; absent: the distance at the start
   Location where;
 };
 
-// Keeps how far a node is from a point or from another node.
+// Keeps the distance of a node from a point or from another node.
 struct SceneDistance {
   std::string name, body;
   Selection select;           // one node
@@ -162,7 +161,7 @@ struct SceneDistance {
   std::string to_body;
   std::optional<Selection> to_select;  // one node; absent: a point
   std::optional<double> length;        // [m]; absent: the distance at the start
-  bool rope = false;                   // only no further than that
+  bool rope = false;                   // an upper bound only
   Location where;
 };
 
@@ -221,14 +220,14 @@ struct SceneOutput {
   double checkpoint = 5.0;  // [s] of wall time between checkpoints; 0: every frame
 };
 
-// The keys that say how a scene is stepped.
+// The keys for the steps of a scene.
 inline constexpr std::array<std::string_view, 7> keys_of_steps = {
     "stepper", "scheme", "dt", "substeps", "precision", "tolerance", "safety"};
 
 struct Scene {
   std::string name;       // default: the file's stem
   std::string title;      // one line
-  std::string look_for;   // a sentence on what to look for
+  std::string look_for;   // a sentence on what to observe
   double duration = 2.0;  // [s]
   StepperKind stepper = StepperKind::verlet;
   Scheme scheme = Scheme::sdirk2;  // of implicit steps
@@ -254,25 +253,25 @@ struct Scene {
   std::vector<SceneProbe> probes;
   std::vector<SceneObstacle> obstacles;
 
-  std::string file;                   // the file it came from, for messages
-  std::vector<std::string> warnings;  // what a user should know about how it was read
+  std::string file;                   // its own name, for messages
+  std::vector<std::string> warnings;  // remarks for the user about how it was read
   std::string document;  // the whole scene as TOML with every override in it; parses to this scene
   std::string base;      // folder that relative mesh paths start from
   GivenMeshes given;     // of a scene built in code
 };
 
-// Reads a scene file; relative mesh paths start from its folder. `overrides` are those of --set,
-// "a.b.c=value" (scene/overrides.h). Everything that can be known without the meshes is checked.
-// Throws Error(io) where the file cannot be read, Error(usage) for an override without '=',
-// Error(input) with file, line and column for everything else.
+// Reads a scene file; relative mesh paths start from its folder. `overrides` as for --set,
+// "a.b.c=value" (scene/overrides.h). Checks everything that can be checked without the meshes.
+// Throws Error(io) if the file cannot be read, Error(usage) for an override without '=',
+// Error(input) with file, line and column for all other faults.
 Scene load_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-// The same for a text; touches no file. `file_name` is for messages, `base` is Scene::base.
+// The same for a text; reads no file. `file_name` is for messages, `base` is Scene::base.
 Scene parse_scene(std::string_view text, const std::string& file_name,
                   const std::filesystem::path& base,
                   const std::vector<std::string>& overrides = {});
 
-// Scene::document with the key `base` in it: a file that runs the same scene from any folder.
+// Scene::document with the key `base`: a file that runs the same scene from any folder.
 std::string document_with_base(const Scene& scene);
 
 }  // namespace sinew

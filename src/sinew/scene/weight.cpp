@@ -8,7 +8,7 @@
 namespace sinew {
 namespace {
 
-constexpr double too_heavy = 5.0;  // rho g l / E: no shape is kept
+constexpr double too_heavy = 5.0;  // rho g l / E: the body cannot keep its shape
 constexpr double light = 0.1;      // a twentieth shorter under its own weight; withstands falls too
 
 // 1, 2 or 5 times a power of ten, not below x > 0.
