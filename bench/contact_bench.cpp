@@ -1,5 +1,5 @@
-// What finding contacts and answering them costs (docs/methods/contact.md): two beams W(k) that lie
-// on each other, and the liver against itself, at rest and while it is stretched.
+// Cost of the search for contacts and of the contact solver (docs/methods/contact.md): two beams
+// W(k) that lie on each other, and the liver against itself, at rest and while it is stretched.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -35,7 +35,7 @@ void report(benchmark::State& state, const SurfaceContacts& contacts,
   state.counters["lists"] = static_cast<double>(contacts.lists_made());
 }
 
-// As in explicit steps: nodes that tremble by a hundredth of a millimetre.
+// Like a body at rest in explicit steps: nodes tremble by a hundredth of a millimetre.
 void LyingBeams(benchmark::State& state) {
   const ThreadLimit one(1);
   const Index k = static_cast<Index>(state.range(0));
@@ -68,8 +68,8 @@ void LyingBeams(benchmark::State& state) {
   report(state, contacts, found);
 }
 
-// The answer of explicit steps to two beams W(k) that have come to lie on each other on the ground;
-// range(1): 0 from nothing, 1 from what contacts pushed with in the step before.
+// The contact solver of explicit steps for two beams W(k) at rest on each other on the ground;
+// range(1): 0 without, 1 with the warm start from the step before.
 void AnswerToLyingBeams(benchmark::State& state) {
   const ThreadLimit one(1);
   const auto k = state.range(0);
@@ -87,7 +87,7 @@ void AnswerToLyingBeams(benchmark::State& state) {
       0.8 * find_stable_step(model, initial_controls(model), s.position, stepper.forces()).step;
   while (s.time < 1.0) stepper.step(h, initial_controls(model), s);
 
-  // The next step up to the answer.
+  // The next step, up to the contact solver.
   const std::vector<Vec3> force = stepper.forces().evaluate(initial_controls(model), s).force;
   const std::vector<Vec3> before = s.position;
   for (std::size_t i = 0; i < s.position.size(); ++i) {
@@ -113,7 +113,7 @@ void AnswerToLyingBeams(benchmark::State& state) {
   state.counters["sweeps"] = answer.sweeps;
 }
 
-// range(0): 1 the fine liver; range(1): 1 stretched by 0.3 % more in every step, to and fro.
+// range(0): 1 the fine liver; range(1): 1 stretched back and forth, by 0.3 % per step.
 void LiverAgainstItself(benchmark::State& state) {
   const ThreadLimit one(1);
   const std::string name = state.range(0) == 1 ? "liver-fine" : "liver";

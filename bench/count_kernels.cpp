@@ -1,5 +1,5 @@
-// The kernels, each called a fixed number of times on W(4), for tools/count_instructions to count
-// their instructions under valgrind. Prints what it was built with and how much work a call does.
+// Calls each kernel a fixed number of times on W(4); tools/count_instructions counts their
+// instructions under valgrind. Prints the compiler, the target and the number of items per kernel.
 #include <fmt/format.h>
 
 #include <functional>
@@ -16,7 +16,7 @@
 #include "sinew/solver/verlet.h"
 #include "sinew/study/bench_loops.h"
 
-// What runs inside of these is counted, by their names.
+// Instructions inside these functions are counted, by name.
 #define SINEW_COUNTED(name)                                                                     \
   extern "C" __attribute__((noinline)) void counted_##name(const std::function<void()>& call) { \
     for (int i = 0; i < calls; ++i) call();                                                     \
@@ -30,7 +30,7 @@ using namespace sinew;
 constexpr int calls = 5;
 constexpr double step = 1e-4;  // [s], well below the stable one
 
-// The beam of the benchmarks, clamped, after some steps.
+// The clamped beam of the benchmarks, after some steps.
 struct Bar {
   Bar(const Material& material, Precision precision)
       : model(made(material)), stepper(model, precision) {
@@ -62,7 +62,7 @@ struct Bar {
   State state;
 };
 
-// After one call outside of what is counted: allocations and first looks are not the kernel's.
+// Makes one uncounted call first, so that allocations and first estimates are not counted.
 void count(const char* name, void (*counted)(const std::function<void()>&), Index items,
            const char* unit, const std::function<void()>& call) {
   call();

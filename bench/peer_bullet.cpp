@@ -1,6 +1,6 @@
-// What Bullet's soft body costs on the same beams, for `sinew bench --peer`: the mesh's edges as
-// links of a btSoftBody, the nodes at the wall fixed, under gravity; in one thread and single
-// precision, as Debian builds the library. Collisions are off. Two rows a mesh:
+// Cost of Bullet's soft body on the same beams, for `sinew bench --peer`: the mesh's edges as links
+// of a btSoftBody, the nodes at the wall fixed, under gravity; in one thread and single precision,
+// as Debian builds the library. Collisions are off. Two rows a mesh:
 //
 //   bullet links   btSoftBody::PSolve_Links: one iteration of its position solver over all links
 //   bullet step    predictMotion, solveConstraints and integrateMotion with the default one
@@ -26,7 +26,7 @@ constexpr double density = 1060.0;        // [kg/m3]
 constexpr btScalar step = 1.0f / 240.0f;  // [s]
 constexpr int steps_before = 20;
 
-// W(k) as Bullet's body; `info` has to outlive it.
+// W(k) as Bullet's body; `info` must outlive it.
 std::unique_ptr<btSoftBody> soft_body(const TetMesh& mesh, const std::vector<Edge>& edges,
                                       btSoftBodyWorldInfo& info) {
   std::vector<btVector3> x;
@@ -59,7 +59,8 @@ void measure_mesh(int k, const study::TimerOptions& options, std::vector<study::
   const auto edges = build_edges(mesh.tets, static_cast<Index>(mesh.nodes.size())).edges;
   btSoftBodyWorldInfo info;
   info.m_gravity = btVector3(0.0f, -9.81f, 0.0f);
-  // Every repetition begins at the same state: what a step costs changes as the body falls.
+  // Every repetition starts from the same state, because the cost of a step changes as the body
+  // falls.
   std::unique_ptr<btSoftBody> body;
   const auto begin = [&] {
     body = soft_body(mesh, edges, info);

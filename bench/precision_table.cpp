@@ -1,7 +1,7 @@
-// What single precision loses: the difference of the forces between single and double precision on
+// Error of single precision: the difference of the forces between single and double precision on
 // the free nodes of W(k) (the clamped bar of the scenes, nu = 0.45) at rest under gravity, as a
-// share of gravity's, for a range of Young's moduli; and the same after the bar was turned with its
-// pins. Prints the table of docs/methods/single-precision.md.
+// share of gravity, for a range of Young's moduli; and the same after a rotation of the bar with
+// its pins. Prints the table of docs/methods/single-precision.md.
 //
 // Usage: sinew_precision_table [K ...]      default: 4 8 17
 #include <fmt/format.h>
@@ -20,8 +20,8 @@ namespace {
 
 using namespace sinew;
 
-// Norm over the free nodes of the forces in single less those in double precision, as a
-// share of the norm of their weights.
+// Norm over the free nodes of the force difference between single and double precision, as a share
+// of the norm of their weights.
 double loss(const Model& model, const State& state) {
   ForceEvaluator in_double(model, Precision::double_);
   ForceEvaluator in_single(model, Precision::single);

@@ -1,7 +1,7 @@
-// What the pages of docs/methods say of cost, on W(k) (the beam of the scenes, 20 k^3 tets) and the
+// Costs that the pages of docs/methods give, on W(k) (the beam of the scenes, 20 k^3 tets) and the
 // liver: limits, the search for the stable step, Verlet's step beside implicit ones, rest states,
-// iterations of conjugate gradients. Kernels and the machine's own limits: `sinew bench`. Every
-// benchmark of steps prints the hash of the state it ends with.
+// iterations of conjugate gradients. `sinew bench` measures kernels and the limits of the machine.
+// Every benchmark of steps prints the hash of its last state.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -54,9 +54,9 @@ void VerletStep(benchmark::State& state) {
   per_spring(state, model);
 }
 
-// Steps of 1/60 s from the start, to a residual of 10^-range(1). Time against Newton steps and
-// products over several tolerances gives what each of them costs: newton_cost and product_cost of
-// sim/choose_stepper.h, in steps of Verlet on the same model.
+// Steps of 1/60 s from the start, to a residual of 10^-range(1). The time against Newton steps and
+// products over several tolerances gives the cost of each: newton_cost and product_cost of
+// sim/choose_stepper.h, in Verlet steps on the same model.
 void ImplicitStep(benchmark::State& state) {
   const ThreadLimit one(1);
   const Model model = model_of(state.range(0));
@@ -86,7 +86,7 @@ Model network_beam(std::int64_t k, std::int64_t kilopascals) {
   return model_of(k, {"beam.law=neo-hookean", fmt::format("beam.young={}e3", kilopascals)});
 }
 
-// Gravity on W(k) to a residual of 0.1, which leaves 0.1 % of the tip's way.
+// Gravity on W(k) to a residual of 0.1, which leaves 0.1 % of the tip's displacement.
 void StaticSolve(benchmark::State& state) {
   const ThreadLimit one(1);
   const Model model = network_beam(state.range(0), 1500);
@@ -104,8 +104,8 @@ void StaticSolve(benchmark::State& state) {
   state.counters["products"] = report.products;
 }
 
-// Conjugate gradients to 1e-3 for the beam's weight, at rest: nu = range(1) / 1000, E = 10^range(2)
-// Pa where it is above 0 and then in a step of 1/60 s, else 1.5 MPa and no inertia. The tables of
+// Conjugate gradients to 1e-3 for the beam's weight, at rest: nu = range(1) / 1000. E = 10^range(2)
+// Pa in a step of 1/60 s if range(2) is above 0, otherwise 1.5 MPa without inertia. The tables of
 // docs/methods/linear-solver.md.
 void ConjugateGradients(benchmark::State& state) {
   const ThreadLimit one(1);
@@ -126,7 +126,7 @@ void ConjugateGradients(benchmark::State& state) {
   state.counters["iterations"] = products;
 }
 
-// A frame of 1/60 s in a single step to a residual of 0.01, mean over the first 30 of the fall.
+// A frame of 1/60 s in a single step to a residual of 0.01; the mean over the first 30 of the fall.
 void ImplicitFrame(benchmark::State& state) {
   const ThreadLimit one(1);
   const Model model = network_beam(state.range(0), state.range(1));

@@ -1,6 +1,6 @@
-# The library that others link: Sinew::sinew, libsinew, one file made of the rooms up to sim/, with
-# the headers of include/sinew/. Its types and functions there are the whole interface: no other
-# library's header is in them, and our warning flags stay ours.
+# The library for other programs: Sinew::sinew, libsinew, one file made of the rooms up to sim/,
+# with the headers of include/sinew/. Types and functions of these headers are the whole interface.
+# They include no header of another library, and the target does not propagate our warning flags.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -21,7 +21,7 @@ target_link_libraries(sinew_library PRIVATE Threads::Threads TBB::tbb fmt::fmt p
 set_target_properties(sinew_library PROPERTIES OUTPUT_NAME sinew EXPORT_NAME sinew
   LINKER_LANGUAGE CXX VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR})
 if(BUILD_SHARED_LIBS AND CMAKE_SYSTEM_NAME STREQUAL "Linux")
-  # Of the templates of other libraries, which are visible by their own headers, too.
+  # Also hides instances of other libraries' templates, which their own headers make visible.
   set(map ${PROJECT_SOURCE_DIR}/cmake/sinew.map)
   target_link_options(sinew_library PRIVATE -Wl,--version-script=${map} -Wl,--no-undefined)
   set_property(TARGET sinew_library APPEND PROPERTY LINK_DEPENDS ${map})
@@ -51,7 +51,8 @@ install(FILES ${PROJECT_BINARY_DIR}/package/SinewConfig.cmake
   ${PROJECT_BINARY_DIR}/package/SinewConfigVersion.cmake
   DESTINATION ${folder} COMPONENT development)
 
-# pkg-config. Who links the archive links what it uses, too; the shared library brings it along.
+# pkg-config. Programs that link the archive also link its libraries; the shared library brings
+# them.
 set(pc_requires "")
 if(NOT BUILD_SHARED_LIBS)
   set(pc_requires "\nRequires: tbb fmt pugixml zlib libhwy tomlplusplus")

@@ -1,4 +1,4 @@
-# One static library per room of the house (docs/architecture.md), and the flags they share.
+# One static library per room (docs/architecture.md), and their common flags.
 find_package(Threads REQUIRED)
 find_package(fmt REQUIRED)
 find_package(Eigen3 REQUIRED)
@@ -10,7 +10,7 @@ find_path(SINEW_XXHASH_INCLUDE xxhash.h REQUIRED)  # compiled in: base/hash.cpp
 find_package(tomlplusplus REQUIRED)
 
 add_library(sinew_flags INTERFACE)
-# The same scene gives the same bits: no fused multiply-adds behind our back, no -march=native.
+# The same scene gives the same bits: no implicit fused multiply-adds, no -march=native.
 target_compile_options(sinew_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion
   $<$<NOT:$<BOOL:$<TARGET_PROPERTY:SINEW_BATCH_SHADOWS>>>:-Wshadow> -ffp-contract=off
@@ -25,9 +25,9 @@ if(SINEW_SANITIZE)
   target_link_options(sinew_flags INTERFACE -fsanitize=${SINEW_SANITIZE})
 endif()
 
-# A plain build takes the sources of a room in batches (unity) and the heaviest headers precompiled:
-# most of a compiler's time goes into headers and the templates in them, once for each source. The
-# preset debug does without both, so that a missing include is seen.
+# A plain build compiles the sources of a room in batches (unity builds) and precompiles the
+# heaviest headers: most of the compiler's time goes into headers and their templates, once for each
+# source. The preset debug uses neither, so that a missing include is detected.
 option(SINEW_FAST_BUILD "Unity builds and precompiled headers" ON)
 set(SINEW_BATCH 16 CACHE STRING "Sources in a batch of a unity build")
 if(SINEW_FAST_BUILD AND CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache"
@@ -35,8 +35,8 @@ if(SINEW_FAST_BUILD AND CMAKE_CXX_COMPILER_LAUNCHER MATCHES "ccache"
   add_compile_options(-fpch-preprocess)  # ccache needs it to see through precompiled headers
 endif()
 
-# sinew_precompile(TARGET FIRST [headers...]): the heaviest headers precompiled, once for all targets
-# that name the same FIRST, whose flags they share.
+# sinew_precompile(TARGET FIRST [headers...]): precompiles the heaviest headers, once for all
+# targets with the same FIRST, whose flags they share.
 function(sinew_precompile target first)
   if(NOT SINEW_FAST_BUILD)
     return()
@@ -49,13 +49,13 @@ function(sinew_precompile target first)
   endif()
 endfunction()
 
-# sinew_batches(TARGET): the sources of TARGET in batches.
+# sinew_batches(TARGET): compiles the sources of TARGET in batches.
 function(sinew_batches target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SINEW_FAST_BUILD}
     UNITY_BUILD_BATCH_SIZE ${SINEW_BATCH})
   if(SINEW_FAST_BUILD AND CMAKE_CXX_COMPILER_ID MATCHES "Clang")
-    # To clang a local name shadows the unnamed namespace of another file of the batch; g++ checks
-    # the same sources.
+    # clang warns if a local name shadows a name in the unnamed namespace of another file of the
+    # batch; g++ checks the same sources.
     set_target_properties(${target} PROPERTIES SINEW_BATCH_SHADOWS ON)
   endif()
 endfunction()
@@ -81,7 +81,7 @@ function(sinew_room name level)
     target_compile_definitions(sinew_${name} PRIVATE SINEW_VERSION="${PROJECT_VERSION}")
     sinew_precompile(sinew_${name} sinew_base)
     sinew_batches(sinew_${name})
-    if(BUILD_SHARED_LIBS)  # which shows what is marked SINEW_API alone
+    if(BUILD_SHARED_LIBS)  # exports only symbols marked SINEW_API
       set_target_properties(sinew_${name} PROPERTIES POSITION_INDEPENDENT_CODE ON
         CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
     endif()
@@ -92,8 +92,8 @@ function(sinew_room name level)
   set_property(GLOBAL APPEND PROPERTY SINEW_ROOMS ${name}:${level})
 endfunction()
 
-# sinew_embed(ROOM FILE SYMBOL): the text of FILE as `extern const char sinew::SYMBOL[]` in the
-# library of ROOM, so that the binary needs no data file.
+# sinew_embed(ROOM FILE SYMBOL): embeds the text of FILE as `extern const char sinew::SYMBOL[]` in
+# the library of ROOM, so that the binary needs no data file.
 function(sinew_embed room file symbol)
   set(path ${PROJECT_SOURCE_DIR}/${file})
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${path})

@@ -1,6 +1,6 @@
-// Any text as a scene of the course framework; what follows its last form feed, or all of it, as
-// its constraints: an Error or a scene whose document reads back to the same document. Touches no
-// file.
+// Parses any text as a scene of the course framework; the part after its last form feed, or all of
+// it, is the constraints. The result is an Error, or a scene whose document reads back to the same
+// document. Reads no file.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

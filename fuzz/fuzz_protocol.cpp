@@ -1,6 +1,6 @@
-// Any text as messages of a page, one a line, and as headers of a request: each is refused with an
-// Error, or a small simulation does it or refuses it with an Error; what the server would say
-// after that can be encoded.
+// Treats any text as messages of a page, one a line, and as headers of a request. Each message is
+// refused with an Error, or a small simulation executes it or refuses it with an Error; the
+// server's answers can then be encoded.
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
@@ -28,7 +28,7 @@ young = 2e4
 select = { side = "+y" }
 )";
 
-// Steps may be short beyond measure: one at a time is enough.
+// Commands for a whole frame are skipped, because steps may be extremely short.
 bool takes_many_steps(const live::Command& command) {
   const auto* advance = std::get_if<live::Advance>(&command);
   return advance != nullptr && advance->frame;

@@ -1,5 +1,5 @@
-// Any text as a scene, and its last line as an override: an Error or a scene whose document reads
-// back to the same document. Touches no file.
+// Parses any text as a scene, and its last line as an override. The result is an Error, or a scene
+// whose document reads back to the same document. Reads no file.
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// What the fuzzers of the mesh formats do with their bytes. tests/io replays the corpus through
-// the same functions in the ordinary build.
+// The fuzz targets of the mesh formats. tests/io replays the corpus through the same functions in
+// the ordinary build.
 #pragma once
 
 #include <cstdlib>
@@ -17,7 +17,7 @@
 
 namespace sinew::fuzz {
 
-// What every reader promises: labels for each cell or none, and all ids in range.
+// Guarantees of every reader: labels for each cell or none, and all ids in range.
 inline void check_mesh(const TetMesh& mesh) {
   const auto in_range = [&](const auto& cells) {
     for (const auto& cell : cells) {
@@ -37,7 +37,7 @@ inline void check_mesh(const TetMesh& mesh) {
   }
 }
 
-// A mesh or an Error; any other exception ends the fuzzer.
+// The result is a mesh or an Error; any other exception ends the fuzzer.
 template <typename Parse>
 void mesh_or_error(Parse parse) {
   try {
@@ -54,7 +54,7 @@ inline void gmsh(std::string_view bytes) {
   mesh_or_error([&] { return io::parse_gmsh(bytes, "fuzz.msh"); });
 }
 
-// The .node, .ele and .face texts in one, divided by '|'.
+// The .node, .ele and .face texts in one, separated by '|'.
 inline void tetgen(std::string_view bytes) {
   io::TetgenText files{"", "", "", "fuzz.node", "fuzz.ele", "fuzz.face"};
   for (std::string* text : {&files.node, &files.ele, &files.face}) {
@@ -73,7 +73,7 @@ inline void vtu(std::string_view bytes) {
   mesh_or_error([&] { return io::parse_vtu(bytes, "fuzz.vtu"); });
 }
 
-// All formats of surfaces; the bytes of one are hardly ever those of another.
+// Tries all formats of surfaces; the bytes of one are rarely valid in another.
 inline void surface(std::string_view bytes) {
   for (const auto parse : {io::parse_off, io::parse_obj, io::parse_stl, io::parse_ply}) {
     try {

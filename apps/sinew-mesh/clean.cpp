@@ -78,8 +78,9 @@ void Cleaner::drop_triangles() {
   }
 }
 
-// Triangles with the same corners. Where such a patch closes the surface, one of each stays; where
-// it is a wall between two bodies that touch there, none does: edges at its rim tell which.
+// Removes triangles with the same corners. If a patch of them closes the surface, one triangle of
+// each set stays. If it is a wall between two bodies that touch there, none stays. The edges at the
+// rim of the patch distinguish the two.
 void Cleaner::drop_duplicates() {
   std::vector<Triangle>& all = s_.triangles;
   std::vector<std::pair<Triangle, Index>> sorted;
@@ -102,7 +103,8 @@ void Cleaner::drop_duplicates() {
   if (count == 0) return;
 
   Groups patches(all.size());
-  std::map<std::array<Index, 2>, std::pair<Index, Index>> edges;  // single triangles; a double one
+  // By edge: the number of single triangles, and a double one.
+  std::map<std::array<Index, 2>, std::pair<Index, Index>> edges;
   for (std::size_t i = 0; i < all.size(); ++i) {
     if (uz(first_of[i]) != i) continue;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -118,8 +120,8 @@ void Cleaner::drop_duplicates() {
       }
     }
   }
-  std::map<Index, std::int64_t> odd_rim;  // of each patch: edges with an odd number of singles,
-                                          // less those with an even one
+  std::map<Index, std::int64_t> odd_rim;  // of each patch: rim edges with an odd number of singles,
+                                          // minus those with an even number
   for (const auto& [edge, found] : edges) {
     const auto& [singles, double_one] = found;
     if (double_one >= 0 && singles > 0) odd_rim[patches.of(double_one)] += singles % 2 ? 1 : -1;
@@ -138,7 +140,7 @@ void Cleaner::drop_duplicates() {
                   walls > 0 ? fmt::format(", and {} that were a wall inside", walls) : ""));
 }
 
-// Nodes that no triangle names.
+// Drops nodes that no triangle uses.
 void Cleaner::drop_nodes() {
   std::vector<Index> number(s_.nodes.size(), -1);
   std::vector<Vec3> kept;

@@ -20,14 +20,14 @@ Point point(const Vec3& x) {
   return {x.x(), x.y(), x.z()};
 }
 
-// Whether two triangles meet in more than the nodes that they share.
+// Whether two triangles meet in more than their common nodes.
 class Meet {
  public:
   explicit Meet(const io::SurfaceSoup& surface) : s_(surface) {}
 
   bool operator()(Index i, Index j) const {
     Triangle a = s_.triangles[uz(i)], b = s_.triangles[uz(j)];
-    // Common nodes to the front of both.
+    // Moves common nodes to the front of both.
     std::size_t common = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto at = std::find(b.begin() + static_cast<std::ptrdiff_t>(common), b.end(), a[k]);
@@ -39,11 +39,11 @@ class Meet {
     const auto p = [&](Index n) { return point(s_.nodes[uz(n)]); };
     const Kernel::Triangle_3 s(p(a[0]), p(a[1]), p(a[2])), t(p(b[0]), p(b[1]), p(b[2]));
     if (common == 0) return CGAL::do_intersect(s, t);
-    if (common == 1) {  // the sides across from the common node
+    if (common == 1) {  // the sides opposite the common node
       return CGAL::do_intersect(s, Kernel::Segment_3(p(b[1]), p(b[2]))) ||
              CGAL::do_intersect(t, Kernel::Segment_3(p(a[1]), p(a[2])));
     }
-    // A common edge: they overlap where they are folded together.
+    // With a common edge: they overlap if they are folded together.
     return CGAL::coplanar(p(a[0]), p(a[1]), p(a[2]), p(b[2])) &&
            CGAL::coplanar_orientation(p(a[0]), p(a[1]), p(a[2]), p(b[2])) == CGAL::POSITIVE;
   }

@@ -49,7 +49,7 @@ class Examiner {
     e_.findings.push_back({kind, severity, count, std::move(text), std::move(remedy)});
   }
   const Vec3& x(Index node) const { return s_.nodes[uz(node)]; }
-  // A place for a message: what is nothing beside the extent is 0.
+  // A place for a message: coordinates that are negligible beside the extent become 0.
   std::string at(const Vec3& p) const {
     const double least = 1e-9 * (e_.high - e_.low).norm();
     return to_text(p.unaryExpr([&](double v) { return std::abs(v) < least ? 0.0 : v; }));
@@ -130,12 +130,12 @@ void Examiner::make_parts() {
   }
 }
 
-// Turns triangles until the two of every edge run through it in opposite directions; where that
-// cannot be, the surface has one side only.
+// Turns triangles until the two at every edge run through it in opposite directions; if that is
+// impossible, the surface has one side only.
 void Examiner::turn_alike() {
   struct Next {
     Index triangle;
-    bool same;  // both run the same way as they are
+    bool same;  // whether both run the same way through the edge
   };
   std::vector<std::vector<Next>> next(s_.triangles.size());
   std::int64_t odd = 0;
@@ -218,7 +218,7 @@ void Examiner::look_at_edges() {
   }
 }
 
-// A node whose triangles do not hang together by edges belongs to several fans.
+// A node belongs to several fans if its triangles are not connected by edges.
 void Examiner::look_at_nodes() {
   Groups fans(3 * s_.triangles.size());  // of the corners of triangles
   const auto corner = [&](Index triangle, Index node) {
@@ -289,7 +289,7 @@ void Examiner::measure_parts() {
   for (std::size_t i = 0; i < s_.triangles.size(); ++i) {
     const Triangle& t = s_.triangles[i];
     Part& part = e_.parts[uz(e_.part_of[i])];
-    // About a corner of the part's box: nothing is lost far from the origin.
+    // Relative to a corner of the part's box, so that no digits are lost far from the origin.
     const Vec3 a = x(t[0]) - part.low, b = x(t[1]) - part.low, c = x(t[2]) - part.low;
     part.area += 0.5 * (b - a).cross(c - a).norm();
     part.volume += a.dot(b.cross(c)) / 6;
@@ -348,7 +348,7 @@ double Examiner::winding_number(Index part, const Vec3& p) const {
   return sum / (2 * std::numbers::pi);
 }
 
-// Parts do not cross here: one point tells whether a part lies in another.
+// Parts do not cross here, so one point decides whether a part lies in another.
 void Examiner::nest() {
   std::vector<Index> corner(e_.parts.size());
   for (std::size_t i = 0; i < s_.triangles.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is wrong with a surface: does it bound a volume?
+// Faults of a surface: whether it bounds a volume.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace sinew::mesher {
 
-// kind: a short stable name for scripts. warning: put right without being asked, or harmless;
-// repairable: --repair may help; fatal: nothing here does.
+// kind: a short stable name for scripts. warning: harmless, or corrected without a request;
+// repairable: --repair may help; fatal: cannot be repaired here.
 struct Finding {
   std::string kind;
   Severity severity;
@@ -21,25 +21,25 @@ struct Finding {
   std::string remedy;  // empty for warnings
 };
 
-// Triangles that hang together by edges.
+// Triangles connected by edges.
 struct Part {
   Index triangles = 0;
-  Index loops = 0;          // of edges with one triangle; 0: closed
+  Index loops = 0;          // number of holes: loops of edges with one triangle; 0: closed
   double area = 0;          // in the file's unit squared
-  double volume = 0;        // that it encloses, if closed, in the unit cubed
-  int depth = 0;            // in how many other closed parts it lies; odd: a cavity
+  double volume = 0;        // enclosed volume if closed, in the unit cubed
+  int depth = 0;            // number of other closed parts around it; odd: a cavity
   Vec3 low = Vec3::Zero();  // its box, in the file's unit
   Vec3 high = Vec3::Zero();
 };
 
 struct Examination {
-  io::SurfaceSoup surface;  // nodes joined, triangles that count for nothing dropped, those of one
-                            // part turned alike, closed parts outwards
+  io::SurfaceSoup surface;  // nodes joined, unusable triangles dropped, the triangles of a part
+                            // turned alike, closed parts outwards
   std::vector<Part> parts;
   std::vector<Index> part_of;  // (triangles)
   std::vector<Finding> findings;
   double area = 0;
-  double volume = 0;  // cavities taken off; of use where nothing is repairable or fatal
+  double volume = 0;  // without cavities; valid if nothing is repairable or fatal
   Vec3 low = Vec3::Zero();
   Vec3 high = Vec3::Zero();
 
@@ -47,26 +47,25 @@ struct Examination {
   const Finding* find(const std::string& kind) const;
 };
 
-// The first step of examine(): joins nodes at the same place; leaves out triangles that name a
-// place twice, stand twice or are a wall between bodies that touch, and nodes that no triangle
-// names.
+// The first step of examine(): joins coincident nodes; drops triangles that repeat a node,
+// duplicates, walls between bodies that touch, and nodes that no triangle uses.
 io::SurfaceSoup clean(const io::SurfaceSoup& soup, std::vector<Finding>& findings);
 
-// Never throws for a bad surface.
+// Does not throw for a faulty surface.
 Examination examine(const io::SurfaceSoup& soup);
 
-// Pairs of triangles that meet in more than a common edge or corner; flat triangles are left out.
+// Pairs of triangles that meet in more than a common edge or corner; flat triangles do not count.
 struct Crossings {
   std::int64_t pairs = 0;
   std::int64_t within_parts = 0;            // both triangles of one part
-  Vec3 first = Vec3::Zero();                // where one is, in the file's unit
+  Vec3 first = Vec3::Zero();                // place of one, in the file's unit
   std::vector<std::array<Index, 2>> parts;  // parts that cross each other, the smaller first
 };
 Crossings find_crossings(const io::SurfaceSoup& surface, const std::vector<Index>& part_of);
 
 // Joins nodes that lie closer than a millionth of the extent, drops scraps, closes holes, unites
-// parts that cross each other, cuts out where a part crosses itself. What was done goes to `log`,
-// a line each. What comes back is for examine() to judge.
+// parts that cross each other, and cuts out where a part crosses itself. Each change is a line in
+// `log`. Call examine() on the result.
 io::SurfaceSoup repair_surface(const Examination& examined, std::vector<std::string>& log);
 
 // Whether all corners lie on one line, to rounding.

@@ -26,7 +26,7 @@ TetMesh fill_image(const io::LabelImage& source, Target target, Progress& progre
   CGAL::get_default_random() = CGAL::Random(0);  // the same mesh every time
   CGAL::Random random(0);
 
-  // Meshed in a frame along the image's axes, about its middle, with an extent near 1.
+  // The mesh is made in a frame along the image's axes, about its middle, with an extent near 1.
   const Vec3 spacing = source.axes.colwise().norm();
   const Vec3 count(source.size[0], source.size[1], source.size[2]);
   const double unit = std::exp2(std::round(std::log2(count.cwiseProduct(spacing).norm())));
@@ -94,7 +94,7 @@ TetMesh fill_image(const io::LabelImage& source, Target target, Progress& progre
   };
   TetMesh mesh =
       fill<Domain, CGAL::Default, CGAL::Default>(domain, start, target, label_of, progress);
-  // Back into the image's own frame, which may be a mirrored one.
+  // Transforms back into the image's own frame, which may be mirrored.
   const Mat3 turn = source.axes * spacing.cwiseInverse().asDiagonal();
   const Vec3 centre = source.origin + source.axes * middle;
   for (Vec3& x : mesh.nodes) x = turn * (unit * x) + centre;

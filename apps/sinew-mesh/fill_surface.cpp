@@ -25,7 +25,7 @@ using Point = Kernel::Point_3;
 using Surface = CGAL::Surface_mesh<Point>;
 using Domain = CGAL::Polyhedral_mesh_domain_with_features_3<Kernel, Surface>;
 
-constexpr std::size_t start_points = 24;  // of each part: enough for a first idea of its shape
+constexpr std::size_t start_points = 24;  // of each part, enough for its rough shape
 
 Surface to_mesh(const io::SurfaceSoup& soup, const Vec3& centre, double unit) {
   std::vector<Point> points;
@@ -35,13 +35,13 @@ Surface to_mesh(const io::SurfaceSoup& soup, const Vec3& centre, double unit) {
   }
   std::vector<std::vector<std::size_t>> polygons;
   for (const Triangle& t : soup.triangles) polygons.push_back({uz(t[0]), uz(t[1]), uz(t[2])});
-  pmp::orient_polygon_soup(points, polygons);  // nodes where the surface touches itself are doubled
+  pmp::orient_polygon_soup(points, polygons);  // doubles nodes where the surface touches itself
   Surface mesh;
   pmp::polygon_soup_to_polygon_mesh(points, polygons, mesh);
   return mesh;
 }
 
-// Triangles of one part that lie far from each other: each is the farthest from those before it.
+// Triangles of one part at large distances: each is the farthest from those before it.
 std::vector<Index> spread(const std::vector<Index>& triangles, const std::vector<Vec3>& middle) {
   std::vector<Index> chosen = {triangles.front()};
   std::vector<double> distance(triangles.size(), std::numeric_limits<double>::infinity());
@@ -65,7 +65,8 @@ TetMesh fill_surface(const io::SurfaceSoup& soup, Target target, Progress& progr
   CGAL::get_default_random() = CGAL::Random(0);  // the same mesh every time
   CGAL::Random random(0);
 
-  // Meshed about the origin with an extent near 1: CGAL's tolerances are absolute in places.
+  // The mesh is made about the origin with an extent near 1, because some of CGAL's tolerances are
+  // absolute.
   Vec3 low = soup.nodes[uz(soup.triangles[0][0])], high = low;
   for (const Triangle& t : soup.triangles) {
     for (const Index n : t) {
@@ -82,11 +83,11 @@ TetMesh fill_surface(const io::SurfaceSoup& soup, Target target, Progress& progr
   Domain domain(surface, &random);
   if (target.sharp) domain.detect_features(target.sharp_angle);
 
-  // CGAL's own way shoots a few rays from the middle and misses small parts.
+  // CGAL's own method shoots a few rays from the middle and misses small parts.
   std::vector<std::pair<Point, Domain::Index>> start;
   const Components parts =
       connected_components(soup.triangles, static_cast<Index>(soup.nodes.size()));
-  // Points within triangles, nowhere special: CGAL gives up where two nodes coincide.
+  // Points within triangles at no special place, because CGAL fails if two nodes coincide.
   std::vector<std::vector<Index>> triangles(uz(parts.count));
   std::vector<Vec3> middle;
   for (std::size_t t = 0; t < soup.triangles.size(); ++t) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small helpers of the files that look at surfaces.
+// Small helpers for the examination of surfaces.
 #pragma once
 
 #include <fmt/format.h>
@@ -13,7 +13,7 @@
 
 namespace sinew::mesher {
 
-// Union-find; a group goes by its smallest member.
+// Union-find; the smallest member identifies a group.
 class Groups {
  public:
   explicit Groups(std::size_t n) : parent_(n) { std::iota(parent_.begin(), parent_.end(), 0); }

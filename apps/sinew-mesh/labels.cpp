@@ -64,7 +64,8 @@ class Flood {
   }
 
  private:
-  // Each kept pair is the farthest from those before it, in voxels; of many, a sample.
+  // Each kept pair is the farthest from those before it, in voxels; of many pairs, a sample is
+  // used.
   void spread(Blob& blob) {
     const std::size_t stride = std::max<std::size_t>(1, pairs_.size() / 20000);
     std::vector<Vec3> places;

@@ -59,12 +59,12 @@ struct Arguments {
   bool quiet = false;
 };
 
-// More tets than this would take more memory than most machines have.
+// Upper bound of the number of tets: more would exceed the memory of most machines.
 constexpr double most_tets = 2e7;
-// Measured on balls, boxes and the liver: tets in a cube whose side is the mean edge.
+// Tets in a cube with the mean edge as its side, measured on balls, boxes and the liver.
 constexpr double tets_per_cube = 10.5;
 
-// "6" or "6mm" in the file's unit, whose length in metres is `scale`.
+// Parses "6" or "6mm" into the file's unit, whose length in metres is `scale`.
 double parse_length(const std::string& text, const std::string& option, double scale) {
   std::size_t end = 0;
   double value = 0;
@@ -86,7 +86,7 @@ double parse_length(const std::string& text, const std::string& option, double s
   return unit.empty() ? value : value * metres / scale;
 }
 
-// The ending has to be one that can be written, before anything is computed.
+// Checks that the output has a writable extension, before anything is computed.
 void check_output(const Arguments& a) {
   const std::string ending = io::lower_extension(a.output);
   if (!io::is_mesh_name(a.output)) {
@@ -116,7 +116,7 @@ void check_output(const Arguments& a) {
   }
 }
 
-// Size and distance from the options and the input's longest side; all in the file's unit.
+// Size and distance from the options and the input's longest side, all in the file's unit.
 Target make_target(const Arguments& a, double longest, double volume, double area) {
   Target target;
   target.size = a.size.empty() ? longest / 20 : parse_length(a.size, "--size", a.scale);
@@ -139,7 +139,7 @@ Target make_target(const Arguments& a, double longest, double volume, double are
         fmt::format("take {:.2g} or more", std::cbrt(tets_per_cube * volume / most_tets)),
         {a.input});
   }
-  // Far beyond what a body takes that the size suits; refinement need not end where it does not.
+  // Far above the need of a body for which the size is suitable; for others refinement may not end.
   const double cells = volume / cube + area / (target.size * target.size);
   target.most_nodes = static_cast<std::size_t>(std::min(20 * cells + 5e4, most_tets));
   return target;
@@ -213,7 +213,7 @@ TetMesh mesh_image(const Arguments& a, Report& r, Progress& progress) {
   return mesh;
 }
 
-// Holds signals back while a file is written: it is whole or it is not there.
+// Blocks signals while a file is written, so that the file is complete or absent.
 class NoInterrupts {
  public:
   NoInterrupts() {
@@ -327,7 +327,7 @@ int main(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? 0 : static_cast<int>(ErrorKind::usage);
   } catch (const Error& e) {
-    // Those of the mesher itself do not know the file.
+    // Errors of the mesher itself do not name the file.
     return fail((e.location().file.empty() ? a.input + ": " : "") + e.what(), e.kind());
   } catch (const std::bad_alloc&) {
     return fail("out of memory\n  remedy: a larger --size", ErrorKind::io);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What meshing surfaces and images share: from a CGAL domain to tets.
+// Shared by meshing of surfaces and images: from a CGAL domain to tets.
 #pragma once
 
 #include "quiet_cgal.h"  // first
@@ -23,17 +23,17 @@
 
 namespace sinew::mesher {
 
-// CGAL's bounds are on circumscribed spheres. Of a mesh that keeps to a bound R the mean edge is
-// about 1.25 R, measured on balls, boxes and the liver.
+// CGAL's bounds are on circumscribed spheres. A mesh with the bound R has a mean edge of about 1.25
+// R, measured on balls, boxes and the liver.
 constexpr double kRadiusOfSize = 0.8;
 
-// A tet whose smallest dihedral angle is below this [degrees] is moved or reweighted away, where
-// that is possible.
+// A tet with a dihedral angle below this [degrees] is moved or reweighted away if possible.
 constexpr double kSliverBound = 12;
 
 constexpr int kAttempts = 4;  // after the first
 
-// Turns the complex into plain arrays. Label of a tet: its subdomain; of a face: from patch_label.
+// Converts the complex to plain arrays. The label of a tet is its subdomain, that of a face comes
+// from patch_label.
 template <class C3t3, class PatchLabel>
 TetMesh to_tet_mesh(const C3t3& c3t3, const PatchLabel& patch_label) {
   TetMesh mesh;
@@ -49,7 +49,7 @@ TetMesh to_tet_mesh(const C3t3& c3t3, const PatchLabel& patch_label) {
     mesh.tet_label.push_back(static_cast<int>(c3t3.subdomain_index(c)));
   }
   for (auto f = c3t3.facets_in_complex_begin(); f != c3t3.facets_in_complex_end(); ++f) {
-    // Seen from the cell that is in the complex, so that the face looks outwards.
+    // Seen from the cell in the complex, so that the face points outwards.
     auto facet = *f;
     if (!c3t3.is_in_complex(facet.first)) facet = c3t3.triangulation().mirror_facet(facet);
     if (!c3t3.is_in_complex(facet.first)) continue;
@@ -67,12 +67,12 @@ TetMesh to_tet_mesh(const C3t3& c3t3, const PatchLabel& patch_label) {
   return mesh;
 }
 
-// The surface cannot be made one without hinges at this size.
+// The surface cannot be made manifold at this size: hinges remain.
 struct NotManifold {};
 
 // Delaunay refinement from the given points on the surface, then perturbation and exudation of
-// slivers. Lengths of the target are in the domain's unit. Error (input) where more than the
-// target's limit of nodes would be needed; NotManifold where that is asked for and cannot be.
+// slivers. Lengths of the target are in the domain's unit. Error (input) if more nodes than the
+// target's limit are necessary; NotManifold if a manifold surface is required and not reached.
 template <class Domain, class CornerIndex, class CurveIndex, class PatchLabel>
 TetMesh generate(
     const Domain& domain,
@@ -99,7 +99,7 @@ TetMesh generate(
   }
   for (const auto& [point, index] : start) {
     const auto v = c3t3.triangulation().insert(typename Tr::Weighted_point(point));
-    // Not a vertex: hidden by a protected one. One that has a dimension: on a sharp edge.
+    // No vertex: a protected one hides it. A vertex with a dimension: it lies on a sharp edge.
     if (v == typename C3t3::Vertex_handle() || v->in_dimension() >= 0) continue;
     c3t3.set_dimension(v, 2);
     c3t3.set_index(v, index);
@@ -121,7 +121,8 @@ TetMesh generate(
                      : "take a larger --size, or --sharp 60 to keep its sharp edges");
   }
   if (target.manifold) {
-    // Where the surface all but touches itself this need not end: no more than a thin body takes.
+    // Refinement may not end if the surface nearly touches itself, so the number of nodes is
+    // limited to that of a thin body.
     progress.phase("parting what touches");
     refine(2 * c3t3.triangulation().number_of_vertices() + 20'000, param::manifold());
     if (code == CGAL::CGAL_MESH_3_MAXIMAL_NUMBER_OF_VERTICES_REACHED) throw NotManifold();
@@ -134,8 +135,8 @@ TetMesh generate(
   return to_tet_mesh(c3t3, patch_label);
 }
 
-// generate(). CGAL gives up where a new node falls exactly on an old one: a slightly smaller size
-// then avoids that. Error (input) where it does not.
+// Calls generate(). CGAL fails if a new node coincides with an old one; a slightly smaller size
+// then avoids that. Error (input) if it does not.
 template <class Domain, class CornerIndex, class CurveIndex, class Start, class PatchLabel>
 TetMesh fill(const Domain& domain, const Start& start, const Target& target,
              const PatchLabel& patch_label, Progress& progress) {
@@ -144,7 +145,7 @@ TetMesh fill(const Domain& domain, const Start& start, const Target& target,
     try {
       return generate<Domain, CornerIndex, CurveIndex>(domain, start, now, patch_label, progress);
     } catch (const NotManifold&) {
-      now.manifold = false;  // the report tells of the hinges
+      now.manifold = false;  // the report names the hinges
     } catch (const CGAL::Failure_exception& e) {
       if (attempt < kAttempts) {
         now.size *= 0.985;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The parts of sinew-mesh: what is asked for, how a surface or an image becomes tets.
+// The parts of sinew-mesh: the requested mesh, and the filling of a surface or an image with tets.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,12 @@
 
 namespace sinew::mesher {
 
-// What a mesh shall be like. Lengths in the input's unit.
+// The requested mesh. Lengths in the input's unit.
 struct Target {
   double size = 0;          // mean edge length
   double distance = 0;      // largest distance of a face's middle from the surface
   double facet_angle = 25;  // smallest angle of a face on the surface [degrees]
-  double sharp_angle = 60;  // with sharp: edges are kept whose faces' normals differ by more
-                            // [degrees]
+  double sharp_angle = 60;  // with sharp: keeps edges whose faces' normals differ by more [degrees]
   bool sharp = false;
   bool manifold = true;  // every edge of the surface has two faces
   std::size_t most_nodes = 20'000'000;

@@ -13,12 +13,12 @@
 namespace sinew::mesher {
 namespace {
 
-// Triangles that hang together by edges with exactly two of them.
+// Triangles connected by edges that have exactly two of them.
 struct Patches {
   Index count = 0;
   std::vector<Index> of;      // (triangles)
   std::vector<bool> open;     // has an edge with one triangle (patches)
-  std::vector<bool> at_wall;  // has an edge with an odd number from three (patches)
+  std::vector<bool> at_wall;  // has an edge with 3, 5, 7 ... triangles (patches)
 };
 
 Patches find_patches(const io::SurfaceSoup& s) {
@@ -80,7 +80,7 @@ double enclosed(const Examination& e) {
   return volume;
 }
 
-constexpr Index most_tried = 24;  // patches whose absence is tried out
+constexpr Index most_tried = 24;  // patches whose removal is tried
 
 }  // namespace
 
@@ -93,7 +93,7 @@ io::SurfaceSoup join_close_nodes(const Examination& e, std::vector<std::string>&
   for (std::size_t i = 0; i < s.nodes.size(); ++i) {
     number[i] = static_cast<Index>(i);
     const Vec3 c = ((s.nodes[i] - e.low) / near).array().floor();
-    if (!(c.cwiseAbs().maxCoeff() < 1e9)) continue;  // a node that no triangle names
+    if (!(c.cwiseAbs().maxCoeff() < 1e9)) continue;  // a node that no triangle uses
     std::array<std::int64_t, 3> cell{};
     for (int a = 0; a < 3; ++a) cell[static_cast<std::size_t>(a)] = std::int64_t(c[a]);
     Index found = -1;

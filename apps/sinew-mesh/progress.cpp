@@ -11,7 +11,7 @@ namespace sinew::mesher {
 
 Progress::Progress(bool wanted) {
   if (!wanted || isatty(STDERR_FILENO) != 1) return;
-  // Signals go to the main thread, which may hold them back while it writes.
+  // Signals are delivered to the main thread, which may block them while it writes.
   sigset_t all, before;
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);

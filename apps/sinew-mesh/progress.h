@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is being done, and for how long, on the terminal's last line.
+// Shows the current phase and its duration on the terminal's last line.
 #pragma once
 
 #include <chrono>
@@ -12,7 +12,7 @@ namespace sinew::mesher {
 
 class Progress {
  public:
-  // Draws nothing unless `wanted` and standard error is a terminal.
+  // Shows nothing unless `wanted` and standard error is a terminal.
   explicit Progress(bool wanted);
   ~Progress();
   Progress(const Progress&) = delete;
@@ -31,7 +31,7 @@ class Progress {
   Clock::time_point since_ = Clock::now();
   bool ends_ = false;
   bool drawn_ = false;
-  std::thread thread_;  // draws; not started where nothing is drawn
+  std::thread thread_;  // draws; not started if nothing is shown
 };
 
 }  // namespace sinew::mesher

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Before any other header of CGAL's Mesh_3: where it gives up it would write files dump-bug.* into
-// the current folder and lines to standard error. Here it does not; the exception tells enough.
+// Include before any other header of CGAL's Mesh_3: on a failure it would write files dump-bug.*
+// into the current folder and lines to standard error. This header prevents that; the exception has
+// the necessary information.
 #pragma once
 
 #ifdef CGAL_MESH_3_DUMP_C3T3_H

@@ -26,7 +26,7 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using Point = Kernel::Point_3;
 using Mesh = CGAL::Surface_mesh<Point>;
 
-// Only some of the triangles, all for an empty choice.
+// The mesh of the chosen triangles; an empty choice means all.
 Mesh to_mesh(const io::SurfaceSoup& soup, const std::vector<bool>& chosen = {}) {
   std::vector<Point> points;
   for (const Vec3& x : soup.nodes) points.emplace_back(x.x(), x.y(), x.z());
@@ -61,7 +61,7 @@ void append(io::SurfaceSoup& soup, const Mesh& mesh) {
   }
 }
 
-// Fills every hole with triangles as small as those around it, as flat as its rim lets it.
+// Fills every hole with triangles as small as those around it, as flat as the rim permits.
 io::SurfaceSoup fill_holes(const io::SurfaceSoup& soup, std::vector<std::string>& log) {
   Mesh mesh = to_mesh(soup);
   pmp::stitch_borders(mesh);
@@ -95,7 +95,7 @@ io::SurfaceSoup cut_out(const Examination& e, std::vector<std::string>& log) {
   return out;
 }
 
-// Parts that cross each other become one: what is in any of them.
+// Unites parts that cross each other.
 io::SurfaceSoup unite(const Examination& e, const Crossings& crossings,
                       std::vector<std::string>& log) {
   std::vector<Mesh> parts;
@@ -104,7 +104,7 @@ io::SurfaceSoup unite(const Examination& e, const Crossings& crossings,
     for (std::size_t i = 0; i < chosen.size(); ++i) chosen[i] = uz(e.part_of[i]) == p;
     parts.push_back(to_mesh(e.surface, chosen));
   }
-  std::vector<std::size_t> now(parts.size());  // in which mesh each part is by now
+  std::vector<std::size_t> now(parts.size());  // index of the mesh that contains each part
   for (std::size_t p = 0; p < now.size(); ++p) now[p] = p;
   std::size_t done = 0, failed = 0;
   for (const auto& [a, b] : crossings.parts) {
@@ -139,7 +139,7 @@ io::SurfaceSoup repair_surface(const Examination& examined, std::vector<std::str
   if (e.find("wall")) e = examine(drop_walls(e, log));
   if (e.find("open")) e = examine(drop_scraps(e, log));
   if (e.find("open") && !e.find("not_orientable")) e = examine(fill_holes(e.surface, log));
-  // Cutting may open new crossings elsewhere: a few rounds.
+  // A cut may create new crossings elsewhere, so there are a few rounds.
   for (int round = 0; round < 3 && e.find("crossing"); ++round) {
     const Crossings crossings = find_crossings(e.surface, e.part_of);
     if (crossings.within_parts == 0) {

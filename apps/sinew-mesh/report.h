@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is told at the end: as text or as JSON.
+// The final report, as text or as JSON.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -21,7 +21,7 @@ struct Volumes {
   double mesh = 0;
 };
 
-// Lengths in metres, after --scale, but for what `examined` holds.
+// Lengths in metres, after --scale, except in `examined`.
 struct Report {
   std::string input;
   bool image = false;
@@ -35,7 +35,7 @@ struct Report {
   Vec3 spacing = Vec3::Zero();
   Vec3 extent = Vec3::Zero();  // of the input's box
 
-  // Of the mesh, where one was made.
+  // Of the mesh, if one was made.
   std::string output;
   Index nodes = 0;
   Index tets = 0;
@@ -46,7 +46,7 @@ struct Report {
   double input_volume() const;
 };
 
-// Fills in what is measured on the mesh, which is in metres, and the warnings.
+// Fills in measurements of the mesh, which is in metres, and the warnings.
 void measure(const TetMesh& mesh, Report& report);
 
 std::string to_text(const Report& report);

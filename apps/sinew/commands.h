@@ -1,5 +1,5 @@
-// The subcommands. Each adds itself to the app with help, options and a callback; a user's mistake
-// is thrown as sinew::Error, `status` is the exit code of a command that ends without one.
+// The subcommands. Each function adds one to the app with help, options and a callback. A user's
+// mistake is thrown as sinew::Error; `status` is the exit code of a command that ends without one.
 #pragma once
 
 #include <CLI/CLI.hpp>

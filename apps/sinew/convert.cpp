@@ -39,7 +39,7 @@ struct ConvertArguments {
   std::string format;
 };
 
-// The options of --format NAME for the ending of the output.
+// The options that --format NAME gives for the extension of the output.
 io::WriteOptions write_options(const std::string& ending, const std::string& name) {
   using io::GmshVersion, io::VtuEncoding;
   static const std::map<std::string, std::map<std::string, io::WriteOptions>> variants = {
@@ -71,7 +71,7 @@ io::WriteOptions write_options(const std::string& ending, const std::string& nam
   return variant->second;
 }
 
-// The files that writing to `out` would replace.
+// The existing files that writing to `out` would replace.
 std::vector<fs::path> existing_outputs(const fs::path& out, const std::string& ending) {
   std::vector<fs::path> files = {out};
   if (ending == ".node" || ending == ".ele") {

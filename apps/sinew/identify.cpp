@@ -1,4 +1,4 @@
-// sinew identify: the moduli that each law gives a material on a given mesh.
+// sinew identify: the moduli of a material under each law, on a given mesh.
 #include <fmt/format.h>
 
 #include <cmath>

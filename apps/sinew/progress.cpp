@@ -85,7 +85,7 @@ void ProgressBar::update(const Progress& p) {
   const std::string text =
       fmt::format("{:3.0f} %  {:.2f} of {:.2f} s  {:.2f}x real time  {} left", 100 * done,
                   p.sim_seconds, p.duration, speed, duration_text(left));
-  // The bar takes what the line leaves; a line that wraps could not be drawn over.
+  // The bar gets the rest of the line; a line that wraps could not be redrawn.
   const int room = terminal_columns() - static_cast<int>(title_.size() + text.size()) - 3;
   const int width = std::clamp(room, 0, 24);
   const int filled = static_cast<int>(done * width);
@@ -106,7 +106,7 @@ void ProgressBar::clear() {
 
 namespace {
 
-// What a run did about steps that were too long and bodies that were tangled; empty: nothing.
+// Interventions of a run: changed steps and inversion recovery; empty if there were none.
 std::string interventions(const Summary& s) {
   std::string text;
   const auto add = [&](std::int64_t count, const char* what) {
@@ -142,7 +142,7 @@ std::string format_table(const Summary& s) {
                     scaled(s.dt, "s"), grouped(s.steps), grouped(s.newton_steps),
                     grouped(s.products), s.residual));
   } else {
-    // The stable step is the shortest of the run, the step the one taken last.
+    // The stable step is the shortest of the run, the step is the last one.
     row("step", fmt::format("{} ({}; stable up to {}{}), {} steps", scaled(s.dt, "s"),
                             s.dt_auto ? "auto" : "given", scaled(s.stable_step, "s"),
                             s.stable_step < s.dt ? " when stiffest" : "", grouped(s.steps)));

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-// `scale` keeps its value where the option is not given.
+// `scale` keeps its value if the option is not given.
 inline void add_scale_option(CLI::App& command, double& scale) {
   const auto positive = [](const std::string& text) {
     double value = 0;

@@ -121,7 +121,7 @@ std::filesystem::path find_scenes() {
   return {};
 }
 
-// The scene behind the gallery before a choice.
+// The scene behind the gallery until one is chosen.
 std::string first_scene(const std::filesystem::path& scenes) {
   const std::filesystem::path file = scenes / "liver.toml";
   std::error_code ignored;

@@ -1,6 +1,6 @@
-// The terms that turn motion into heat, each by itself in plain loops: f = -C(x) v with C symmetric
-// and positive semidefinite. The reference for the fused loops of a step, as the terms of
-// forces/material_terms.h are.
+// The damping terms, each separately in plain loops: f = -C(x) v with C symmetric and positive
+// semidefinite. They are the reference for the fused loops of a step, like the terms of
+// forces/material_terms.h.
 #pragma once
 
 #include <array>

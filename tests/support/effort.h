@@ -1,5 +1,5 @@
-// How much a test does. Sanitizers run code some twenty times slower: under them the long tests run
-// the same code on fewer cases and for shorter times; the full size is that of the plain build.
+// The amount of work in a test. Sanitizers run code some twenty times slower: with them the long
+// tests run the same code on fewer cases and for shorter times; the plain build has the full size.
 #pragma once
 
 namespace sinew::test {

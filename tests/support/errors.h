@@ -1,4 +1,4 @@
-// What a user's mistake is told.
+// Messages of errors in tests.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 namespace sinew::test {
 
-// what() of the error that `act` ends with; empty without one.
+// what() of the error that `act` throws; empty without one.
 template <typename Act>
 std::string error_of(Act act) {
   try {
@@ -20,7 +20,7 @@ std::string error_of(Act act) {
   return {};
 }
 
-// The message alone of an error in an input, which names a remedy too; "no error" without one.
+// The message of an input error, which also names a remedy; "no error" without one.
 template <typename Act>
 std::string message_of(Act act) {
   try {

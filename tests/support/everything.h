@@ -1,4 +1,4 @@
-// A model with something for every term to do.
+// A model in which every term acts.
 #pragma once
 
 #include <Eigen/Core>
@@ -11,7 +11,7 @@
 
 namespace sinew::test {
 
-// Something of everything: springs, network, volume, a tie, a load, an obstacle, a grab.
+// One of each: springs, network, volume, a tie, a load, an obstacle, a grab.
 struct Everything {
   Everything() {
     model = tissue_box({}, {2, 2, 2});

@@ -10,14 +10,14 @@
 
 namespace sinew::test {
 
-// A X of every node.
+// A X at every node.
 inline std::vector<Vec3> mapped(const std::vector<Vec3>& X, const Mat3& A) {
   std::vector<Vec3> x;
   for (const Vec3& p : X) x.push_back(A * p);
   return x;
 }
 
-// `count` vectors of the cube [-size, size]^3.
+// `count` vectors in the cube [-size, size]^3.
 inline std::vector<Vec3> scattered(std::size_t count, double size, std::uint64_t seed) {
   std::vector<Vec3> out;
   for (std::size_t i = 0; i < count; ++i) {
@@ -26,12 +26,12 @@ inline std::vector<Vec3> scattered(std::size_t count, double size, std::uint64_t
   return out;
 }
 
-// The next of a sequence of points in the cube [-1, 1]^3.
+// The next point of a sequence in the cube [-1, 1]^3.
 inline Vec3 somewhere(std::uint64_t& seed) {
   return 2.0 * random_point(seed++) - Vec3::Ones();
 }
 
-// Every node moved by up to `size` in each coordinate.
+// Every node moved by at most `size` in each coordinate.
 inline std::vector<Vec3> shaken(const std::vector<Vec3>& X, double size) {
   std::vector<Vec3> x = scattered(X.size(), size, 1000);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += X[i];

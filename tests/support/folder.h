@@ -1,4 +1,4 @@
-// A folder of its own for a test.
+// A separate folder for a test.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 
 namespace sinew::test {
 
-// Named after the running test and process, made empty, removed with the object.
+// Named after the running test and process; created empty and removed with the object.
 class Folder {
  public:
   Folder()

@@ -1,4 +1,4 @@
-// Small models for tests, put together by hand or from shapes.
+// Small models for tests, built by hand or from shapes.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ namespace sinew::test {
 
 struct Point {
   Vec3 position;
-  double mass = 1.0;  // [kg]; 0: held
+  double mass = 1.0;  // [kg]; 0: fixed
   Vec3 velocity = Vec3::Zero();
 };
 
@@ -40,7 +40,7 @@ inline Model point_masses(const std::vector<Point>& points) {
   return m;
 }
 
-// 2 kg, held by a spring of 50 N/m that is at rest at 1 m: omega = 5 rad/s. Starts at `start` [m].
+// 2 kg on a spring of 50 N/m with a rest length of 1 m: omega = 5 rad/s. Starts at `start` [m].
 inline Model oscillator(double damping = 0.0, double start = 1.1) {
   Model m = point_masses({{Vec3(0, 0, 0), 0.0}, {Vec3(start, 0, 0), 2.0}});
   add_attachment(m, 0, 1, 50.0, damping, 1.0);
@@ -56,7 +56,7 @@ inline void add_limited(Model& m, Index a, Index b, double k, double l0, double 
   m.compress_limit.back() = compress;
 }
 
-// An obstacle that presses: a soft sphere.
+// A soft sphere as an obstacle.
 inline Obstacle soft_sphere(const std::string& name, const Vec3& center, double radius,
                             double stiffness, const Path& path = {}) {
   Obstacle o;
@@ -81,7 +81,8 @@ inline Model tissue_box(const Material& material, const std::array<int, 3>& cell
   return m;
 }
 
-// What start = "flat", "inverted" and "random" do, across the y axis, to the nodes that are free.
+// Tangled starts as with start = "flat", "inverted" and "random", across the y axis, of the free
+// nodes.
 enum class Tangle { flat, inverted, random };
 inline constexpr std::array<Tangle, 3> tangles = {Tangle::flat, Tangle::inverted, Tangle::random};
 

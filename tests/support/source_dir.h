@@ -1,5 +1,5 @@
-// Where the repository lies. One source file knows it, so that no other command line holds a path
-// of this machine and compiler caches work across folders.
+// The path of the repository. Only one source file knows it, so that no other command line has a
+// path of this machine and compiler caches work across folders.
 #pragma once
 
 #include <string>

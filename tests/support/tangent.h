@@ -8,7 +8,7 @@
 
 namespace sinew::test {
 
-// (3 nodes, 3 nodes); rows of nodes whose motion is given are 0.
+// (3 nodes, 3 nodes); rows of nodes with a given motion are 0.
 inline Eigen::MatrixXd dense_tangent(const Model& model, const std::vector<Vec3>& x) {
   const auto n = static_cast<Eigen::Index>(x.size());
   Eigen::MatrixXd K(3 * n, 3 * n);

@@ -1,11 +1,11 @@
-// Configurations, and what a term does there, in a word each.
+// Configurations, and short names for the results of a term in them.
 #pragma once
 
 #include "sinew/forces/term.h"
 
 namespace sinew::test {
 
-// Without gravity or a grab. The model and the positions have to live on.
+// Without gravity and grabs. The model and the positions must outlive the result.
 inline Configuration at(const Model& model, std::span<const Vec3> x, double time = 0.0) {
   static const Controls none;
   return {model, none, x, time};
