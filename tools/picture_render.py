@@ -41,7 +41,7 @@ class Camera:
         self.target = (points.min(axis=0) + points.max(axis=0)) / 2
         side, top, bottom = margins
         room = self.half * [1 - 2 * side, 1 - top - bottom]
-        for _ in range(8):  # centre what is seen, then step back until it fits
+        for _ in range(8):  # centre the visible part, then step back until it fits
             x, y, z = self._local(points)
             self.distance = np.max(np.maximum(np.abs(x) / room[0], np.abs(y) / room[1]) + z)
             u, v = x / (self.distance - z), y / (self.distance - z)
@@ -69,7 +69,7 @@ class Camera:
 
 
 class Visible:
-    """What a camera sees of a closed surface: triangle id (-1: none), depth, corner weights."""
+    """The visible part of a closed surface: triangle id (-1: none), depth, corner weights."""
 
     def __init__(self, camera, points, triangles):
         x, y, depth = camera.project(points)
@@ -120,7 +120,7 @@ class Visible:
 
 
 class Occluder:
-    """Answers from where a direction of light is blocked, by depth maps of points on the surface."""
+    """Tests whether a direction of light is blocked, by depth maps of points on the surface."""
 
     SAMPLES_PER_PIXEL = 3
 

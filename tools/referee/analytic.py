@@ -32,8 +32,8 @@ def uniaxial_state(young, poisson, stretch):
 
 def surface_is_stable(young, poisson, stretch):
     """Whether waves on a free side of that bar cost energy: the surface impedance of the law's
-    tangent moduli is positive definite (Biot 1963; Stroh's formalism). Where they do not, the
-    homogeneous state is no rest state, however fine the mesh."""
+    tangent moduli is positive definite (Biot 1963; Stroh's formalism). If they do not, the
+    homogeneous state is not a rest state, however fine the mesh."""
     lam, mu = ccx.lame(young, poisson)
     kappa = lam + mu
     lateral, _ = uniaxial_state(young, poisson, stretch)
@@ -97,7 +97,7 @@ def hollow_sphere(_runner):
         lam, mu = ccx.lame(young, poisson)
         inner = pressure * a ** 3 / (b ** 3 - a ** 3) * (
             a / (3.0 * lam + 2.0 * mu) + b ** 3 / (4.0 * mu * a ** 2))
-        # What the formula leaves out is of the order of the strain, p / mu.
+        # The error of the formula is of the order of the strain, p / mu.
         yield Value(f"nu={poisson}", "inner", inner, inner * pressure / mu)
 
 

@@ -10,7 +10,7 @@ import subprocess
 DENSITY = 1060.0  # [kg/m3], of every case
 GRAVITY = 9.81  # [m/s2]
 
-# 20 characters is all that ccx reads of a number.
+# ccx reads at most 20 characters of a number.
 NUMBER = "{:.12e}"
 
 
@@ -88,7 +88,7 @@ def static_step(body, law, first=0.1, largest=0.25, solver=""):
 
 
 class Results:
-    """What ccx printed into its .dat file."""
+    """The content of the .dat file of ccx."""
 
     HEAD = re.compile(r"^ (\S.*?) \(.*\) for set (\S+) and time +(\S+)\s*$")
     TOTAL = re.compile(r"^ total force \(fx,fy,fz\) for set (\S+) and time +(\S+)\s*$")
@@ -151,7 +151,7 @@ class Runner:
         return Results((folder / "job.dat").read_text())
 
     def remember(self, name, function):
-        """What function() gave when it was first called under this name; a list of numbers."""
+        """The result of function() at its first call under this name: a list of numbers."""
         path = self.folder / f"{name}.json"
         if not path.exists():
             self.say(f"  fem {name}")

@@ -10,7 +10,7 @@ import type { Command, Text } from "./protocol";
 import { SaveMenu } from "./save";
 import "./around.css";
 
-/** The parts of the view that it uses. */
+/** The parts of the view that this file uses. */
 export interface Inside {
   canvas: HTMLCanvasElement;
   send(command: Command): boolean;

@@ -1,5 +1,6 @@
-// The ball tool: press on the tissue, and a rigid ball appears there and is pushed in while you hold;
-// drag moves it sideways. The simulation gives the actual position of the ball (spheres.ts).
+// The ball tool: a press on the tissue makes a rigid ball there, which is pushed in while the
+// button is held; dragging moves it sideways. The simulation gives the actual position of the ball
+// (spheres.ts).
 import * as THREE from "three";
 import { glass, GLASS_ORDER } from "./glass";
 import type { Picker } from "./picker";
@@ -7,7 +8,7 @@ import type { Command, SphereStatus, Vec } from "./protocol";
 import type { Stage } from "./stage";
 
 const PUSH_TIME = 220; // [ms], approximate duration of the push
-const FLATTEST = 0.4; // smallest cosine between ray and surface for which the ball is drawn back
+const FLATTEST = 0.4; // smallest cosine between ray and surface at which the ball is drawn back
 const NOTCH = 0.1; // of the radius, for one press of a key or notch of the wheel
 export const DEEPEST = 2; // radii
 
@@ -19,13 +20,13 @@ export class BallTool {
   /** Called when keys or wheel change the depth. */
   deepened: () => void = () => {};
   private on = false;
-  private pointer = -1; // that pushes
+  private pointer = -1; // the pushing pointer
   private readonly plane = new THREE.Plane();
   private readonly inward = new THREE.Vector3(); // direction of the push
   private readonly target = new THREE.Vector3(); // of the centre, in the image plane
-  private pushed = 0; // beyond the plane [m]
+  private pushed = 0; // distance beyond the plane [m]
   private sent = "";
-  private there = false; // at its full size, as last reported
+  private there = false; // at its full size in the last report
   private now = 0; // [ms]
   private readonly preview: THREE.Mesh;
 

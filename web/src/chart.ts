@@ -14,7 +14,7 @@ export interface ChartOptions {
   unit: string;
   floor: number; // smallest range of the axis, so that noise does not fill it
   lines: Line[];
-  /** Called with the sample under the pointer; null: none, the newest counts. */
+  /** Called with the sample under the pointer; null: none, the newest is shown. */
   pointed: (index: number | null) => void;
   zoomed: (is: boolean) => void;
 }
@@ -115,7 +115,7 @@ export class Chart {
     return high - low < span ? [middle - 0.6 * span, middle + 0.6 * span] : [low - 0.08 * span, high + 0.08 * span];
   }
 
-  /** The range of time has changed. */
+  /** Called when the range of time has changed. */
   private scaled(): void {
     const { min, max } = this.plot.scales.x;
     const [first, last] = [this.times[0], this.times[this.times.length - 1]];

@@ -82,7 +82,7 @@ export class Gallery {
       this.cards.replaceChildren(...entries.map((entry) => this.card(entry)));
       if (entries.length === 0) this.cards.append(h("p", { class: "loading" }, "No scenes are installed with this Sinew."));
     } catch (error) {
-      this.asked = false; // asks again when it is opened again
+      this.asked = false; // requests the list again when it is opened again
       this.cards.replaceChildren(h("p", { class: "loading" }, `The list of scenes could not be had: ${error instanceof Error ? error.message : error}`));
     }
     this.setCurrent(this.current);

@@ -12,18 +12,18 @@ const MOST_HANDS = 16;
 
 interface Held {
   node: number; // -1: hidden by a cut
-  rest: THREE.Vector3; // of the node, which identifies it in a new topology
+  rest: THREE.Vector3; // of the node; identifies it in a new topology
   target: THREE.Vector3;
   arrow: THREE.Group;
   label: Label;
 }
 
 export class Hands {
-  tool: "pull" | "pin" | null = "pull"; // null: the pointer is another tool
+  tool: "pull" | "pin" | null = "pull"; // null: another tool has the pointer
   mayPull = false; // this browser has the controls
   readonly held = new Map<number, Held>();
   private readonly plane = new THREE.Plane();
-  private pointer = -1; // that pulls
+  private pointer = -1; // the pulling pointer
   private moved = false; // since the last frame
   private known = new Map<number, HandInfo>();
 

@@ -44,8 +44,8 @@ export function columnsOf(scene: SceneInfo): Column[] {
   ];
 }
 
-/** Samples of the columns over simulated time. When they become too many, every second one goes and
- * new ones are taken half as often: what is kept is as dense at the start as at the end. */
+/** Samples of the columns over simulated time. If there are too many, every second one is dropped
+ * and the rate is halved, so the density is the same at the start and at the end. */
 export class History {
   columns: Column[] = [];
   time: number[] = []; // [s], growing

@@ -127,7 +127,7 @@ class App {
     const reset = iconButton("reset", "Back to the start", "R", () => this.reset());
     this.role.addEventListener("click", () => {
       this.send({ type: "control" });
-      this.stage.canvas.focus(); // the button goes away
+      this.stage.canvas.focus(); // the button disappears
     });
     const transport = h("div", { id: "transport", role: "toolbar", "aria-label": "Simulation" },
       this.play, step, reset,
@@ -284,7 +284,7 @@ class App {
     // The space bar presses the button that has the focus, as everywhere.
     if (name === " " && at.closest("button, input[type=checkbox], summary")) return;
     const action = actions[name];
-    const dialog = document.querySelector<HTMLElement>("dialog[open]"); // only its own key does anything
+    const dialog = document.querySelector<HTMLElement>("dialog[open]"); // a dialog reacts only to its own key
     if (!action || (dialog && dialog.dataset.key !== name)) return;
     event.preventDefault();
     action();

@@ -5,7 +5,7 @@ export class Opening {
   readonly element: HTMLElement;
   private readonly text = h("span");
   private readonly bar = h("progress", { max: 1, "aria-label": "Sent" });
-  private opened = -1; // scenes that the server had opened when this began
+  private opened = -1; // number of scenes that the server had opened at the start
   private latest = 0;
   pending = false;
 
@@ -27,7 +27,7 @@ export class Opening {
     this.pending = true;
   }
 
-  /** A scene has opened; with the count of opened scenes. */
+  /** A scene has opened; with the number of opened scenes. */
   scene(opened: number): void {
     this.latest = opened;
     if (this.pending && opened > this.opened) this.end();

@@ -21,7 +21,7 @@ const DIRECTIONS: [string, Vec][] = [
   ["To the front", [0, 0, 1]],
 ];
 const EVERYTHING = "*";
-/** How far springs may be stretched or compressed, in shares of their length. */
+/** Limits of the stretch and compression of springs, as shares of their length. */
 const LIMITS = ["inf", "0.01", "0.02", "0.05", "0.1", "0.2", "0.5"];
 const limitName = (value: string): string => (value === "inf" ? "Any" : `At most ${percent(Number(value), 2)}`);
 const limits = (label: string) => select(label, LIMITS.map((l) => [l, limitName(l)]));
@@ -51,7 +51,7 @@ export class Panel {
   private readonly facts = new Facts();
   private readonly energies = new Facts();
 
-  /** `more`: sections of others. */
+  /** `more`: sections of other files. */
   constructor(
     private readonly send: (command: Command) => boolean,
     ...more: HTMLElement[]

@@ -29,7 +29,7 @@ export interface QuantityInfo {
 /** An obstacle of the scene. */
 export interface ObstacleInfo {
   name: string;
-  radius: number; // of a ball around it [m]; 0 of a plane
+  radius: number; // of a ball around it [m]; 0 for a plane
   shape: string; // "sphere" and "plane" are drawn by name, others by their triangles
   vertices: number[]; // x, y, z, ... in its own axes [m]
   normals: number[]; // x, y, z, ... of the vertices; empty: those of the triangles
@@ -64,7 +64,7 @@ export interface SceneInfo {
   ground: { point: Vec; normal: Vec } | null;
   probes: string[];
   obstacles: ObstacleInfo[];
-  laws: { name: string; title: string }[]; // that a second body may have
+  laws: { name: string; title: string }[]; // for a second body
   compare: string; // the law of the second body; empty without one
   cut: CutPlane | null;
   springs_shown: boolean;

@@ -1,4 +1,4 @@
-// Which corners of a surface share a normal: round parts look round, edges stay edges.
+// Corners of a surface that share a normal: round parts look round, edges stay edges.
 
 export interface Corners {
   node: Uint32Array; // surface node of each vertex to draw
@@ -18,7 +18,7 @@ export function splitCorners(triangles: Uint32Array, rest: Float32Array, angle: 
     for (let k = 0; k < 3; ++k) normals[3 * t + k] = n[k] / size;
   }
   const least = Math.cos(angle);
-  // Of each node: the vertices made for it, each with the normals of its triangles added up.
+  // By node: its vertices, each with the sum of its triangles' normals.
   const groups = new Map<number, { vertex: number; sum: [number, number, number] }[]>();
   const node: number[] = [];
   const index = new Uint32Array(triangles.length);

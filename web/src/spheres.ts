@@ -8,9 +8,9 @@ import type { Stage } from "./stage";
 import { Track } from "./track";
 
 const LEAST_FORCE = 1e-3; // [N], smallest force with a label
-const GROWTH = 0.3; // share of the way to another radius, a picture
+const GROWTH = 0.3; // share of the difference between radii, per picture
 const SHAPE = new THREE.SphereGeometry(1, 64, 40);
-const PLANE = 4; // diagonals of the bodies that a plane is shown wide
+const PLANE = 4; // diameter of the drawn disc of a plane, in diagonals of the bodies
 
 /** The geometry of an obstacle other than a sphere, in its own axes and in metres. */
 function geometryOf(o: ObstacleInfo, diagonal: number): THREE.BufferGeometry | null {
@@ -33,7 +33,7 @@ class Sphere {
   private readonly label: Label;
   private readonly turn = new THREE.Quaternion();
 
-  /** `own`: what it looks like in metres; null: a sphere, which may change its radius. */
+  /** `own`: its geometry in metres; null: a sphere, whose radius may change. */
   constructor(
     labels: HTMLElement,
     className: string,
@@ -45,7 +45,7 @@ class Sphere {
       const mesh = new THREE.Mesh(own ?? SHAPE, material);
       mesh.castShadow = i === 0;
       mesh.receiveShadow = true;
-      // The last one is what is seen; before it, what hides its far side.
+      // The last material is visible; the one before it hides its far side.
       mesh.renderOrder = material.transparent ? GLASS_ORDER + 2 + i : 0;
       this.group.add(mesh);
     });
@@ -63,7 +63,7 @@ class Sphere {
     this.label.write(force < LEAST_FORCE ? "" : si(force, "N", force < 1 ? 2 : 3));
   }
 
-  /** `beside`: where the twin is, from it; zero: there is none. Returns whether it looks different. */
+  /** `beside`: offset of the twin; zero: there is none. Returns whether the picture changed. */
   update(stage: Stage, time: number, now: number, beside: THREE.Vector3): boolean {
     if (!this.track.known) return false;
     const appears = !this.group.visible;
@@ -158,8 +158,8 @@ export class Spheres {
     this.stage.changed();
   }
 
-  /** Once per picture, which shows the simulated time [s]; `now` [ms]; `beside`: how far a compared
-   * body is drawn from the first [m]. */
+  /** Once per picture, which shows the simulated time [s]; `now` [ms]; `beside`: offset of a
+   * compared body from the first [m]. */
   update(time: number, now: number, beside: THREE.Vector3): void {
     for (const sphere of this.ball ? [...this.obstacles, this.ball] : this.obstacles) {
       if (sphere.update(this.stage, time, now, beside)) this.stage.changed();

@@ -31,9 +31,9 @@ const GRID_FRAGMENT = `
     if (gl_FragColor.a < 0.004) discard;
   }`;
 
-const ROOM = 1.2; // around what is to be seen
+const ROOM = 1.2; // margin factor around the visible objects
 const GLIDE = 450; // [ms]
-const HOME = new THREE.Vector3(0.52, 0.3, 0.8).normalize(); // a little from above and from the side
+const HOME = new THREE.Vector3(0.52, 0.3, 0.8).normalize(); // slightly from above and from the side
 
 interface Place {
   position: THREE.Vector3;
@@ -44,7 +44,7 @@ interface Place {
 interface Glide {
   from: Place;
   to: Place;
-  start: number; // [ms]; -1: with the next picture
+  start: number; // [ms]; -1: starts with the next picture
 }
 
 export class Stage {
@@ -53,7 +53,7 @@ export class Stage {
   readonly renderer: THREE.WebGLRenderer;
   readonly controls: OrbitControls;
   cell = 0.1; // of the grid [m]
-  readonly modest: boolean; // drawn by the processor
+  readonly modest: boolean; // no graphics card: drawn by the processor
   private readonly sun = new THREE.DirectionalLight(0xfff1e2, 2.6);
   private readonly floor: THREE.Mesh;
   private readonly grid: THREE.Mesh<THREE.PlaneGeometry, THREE.ShaderMaterial>;
@@ -65,7 +65,7 @@ export class Stage {
 
   constructor(readonly canvas: HTMLCanvasElement) {
     this.renderer = new THREE.WebGLRenderer({ canvas, antialias: true });
-    // Without a graphics card a frame takes long: fewer pixels and less light then.
+    // Without a graphics card a frame takes long: fewer pixels and less light are used.
     const context = this.renderer.getContext();
     const info = context.getExtension("WEBGL_debug_renderer_info");
     const name = info ? String(context.getParameter(info.UNMASKED_RENDERER_WEBGL)) : "";
@@ -88,7 +88,7 @@ export class Stage {
     rim.position.set(-2, 1.2, -2.5);
     this.scene.add(this.sun, this.sun.target, rim, new THREE.HemisphereLight(0xcfe0f2, 0x3a322d, 0.55));
 
-    // It lies in the plane of the grid, which must not be lost behind it.
+    // The shadow lies in the plane of the grid, which must stay visible.
     const shade = new THREE.ShadowMaterial({ opacity: 0.42, depthWrite: false });
     this.floor = new THREE.Mesh(new THREE.PlaneGeometry(1, 1), shade);
     this.floor.receiveShadow = true;
@@ -144,7 +144,7 @@ export class Stage {
     this.camera.far = 60 * size;
     this.controls.minDistance = 0.05 * size;
     this.controls.maxDistance = 20 * size;
-    // Far enough for the narrower side of the screen: soft bodies leave their bounds.
+    // Distant enough for the narrower side of the screen, because soft bodies leave their bounds.
     this.home = () => {
       const half = (this.camera.fov / 360) * Math.PI;
       const fit = Math.atan(Math.tan(half) * Math.min(1, this.camera.aspect));
@@ -153,7 +153,7 @@ export class Stage {
     this.goHome();
   }
 
-  /** Turns to these bounds [m], from the side where the camera is. */
+  /** Turns to these bounds [m] from the current direction of the camera. */
   include(boxes: THREE.Box3[]): void {
     this.home = () => this.placeFor(boxes, HOME);
     const from: Place = { position: this.camera.position.clone(), target: this.controls.target.clone() };
@@ -180,7 +180,7 @@ export class Stage {
 
   goHome(): void {
     this.glide = null;
-    this.controls.enableDamping = false; // what still swings on ends
+    this.controls.enableDamping = false; // ends damped motion
     this.controls.update();
     this.controls.enableDamping = true;
     this.place(this.home());
@@ -225,8 +225,8 @@ export class Stage {
     this.stale = true;
   }
 
-  /** Draws if there is anything new to see; without a graphics card not so often that nothing else
-   * gets done. Returns whether it did. */
+  /** Draws if anything has changed; without a graphics card less often, so that the page remains
+   * responsive. Returns whether it drew. */
   draw(now: number): boolean {
     this.glideOn(now);
     this.controls.update();
@@ -250,7 +250,7 @@ export class Stage {
     this.changed();
   }
 
-  /** The view as it is now, as a picture. */
+  /** The current view as a picture. */
   picture(done: (png: Blob | null) => void): void {
     this.renderer.render(this.scene, this.camera);
     this.canvas.toBlob(done);

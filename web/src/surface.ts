@@ -4,19 +4,19 @@ import { glass, GLASS_ORDER, type GlassOptions, nearestOnly } from "./glass";
 import type { Corners } from "./smooth";
 
 const TISSUE_GLOSS = { roughness: 0.5, clearcoat: 0.45, clearcoatRoughness: 0.35 };
-const COLOR_GLOSS = { roughness: 0.85, clearcoat: 0, clearcoatRoughness: 0.3 }; // colours read true
+const COLOR_GLOSS = { roughness: 0.85, clearcoat: 0, clearcoatRoughness: 0.3 }; // little gloss, so that colours are legible
 
 export class Surface {
   readonly group = new THREE.Group();
   readonly mesh: THREE.Mesh<THREE.BufferGeometry, THREE.MeshPhysicalMaterial>;
-  private readonly veil: THREE.Mesh; // what hides the far sides of the glass
+  private readonly veil: THREE.Mesh; // hides the far sides of the glass
   private readonly solid: THREE.MeshPhysicalMaterial;
   private readonly clear: THREE.MeshPhysicalMaterial;
   /** The bounds of the surface [m]. */
   readonly box = new THREE.Box3();
   private nodeOf: Uint32Array = new Uint32Array();
 
-  /** `glassy`: of the glass that it can be made of. */
+  /** `glassy`: options of the glass. */
   constructor(glassy: GlassOptions) {
     this.solid = new THREE.MeshPhysicalMaterial({
       vertexColors: true,
@@ -24,7 +24,7 @@ export class Surface {
       side: THREE.DoubleSide,
       shadowSide: THREE.BackSide,
     });
-    // Lines and points in front of the faces they lie in.
+    // Draws lines and points in front of the faces that contain them.
     this.solid.polygonOffset = true;
     this.solid.polygonOffsetFactor = 1;
     this.solid.polygonOffsetUnits = 1;
@@ -52,7 +52,7 @@ export class Surface {
     }
     geometry.boundingSphere = new THREE.Sphere();
     this.mesh.geometry = this.veil.geometry = geometry;
-    // Drawn before any surface was there, it was compiled for one without normals: flat.
+    // If it was drawn before there was a surface, it was compiled without normals: flat.
     this.solid.needsUpdate = this.clear.needsUpdate = true;
   }
 

@@ -76,7 +76,7 @@ export class Tissue {
       colors = this.valueColors(frame.value, info.signed);
     }
     this.paint(colors);
-    // Of the values only the distance is as much the other body's as the first one's.
+    // Only the distance is a value of both bodies.
     this.compared.show(frame.compared, info?.name === "distance" ? colors : null);
   }
 
@@ -88,7 +88,7 @@ export class Tissue {
     return to.fromArray(this.positions, 3 * node);
   }
 
-  /** The node that is there at rest; -1: none. */
+  /** The node at a rest position; -1: none. */
   nodeAtRest({ x, y, z }: THREE.Vector3): number {
     for (let i = 0; i < this.rest.length; i += 3) {
       if (this.rest[i] === x && this.rest[i + 1] === y && this.rest[i + 2] === z) return i / 3;
@@ -138,7 +138,7 @@ export class Tissue {
   }
 }
 
-/** The smallest range at which the colours of a quantity mean more than noise. */
+/** The smallest range in which the colours of a quantity show more than noise. */
 function floorOf(name: string, scene: SceneInfo): number {
   const softest = Math.min(...scene.parts.map((p) => p.young));
   const floors: Record<string, number> = {

@@ -2,16 +2,16 @@
 import * as THREE from "three";
 import type { Vec } from "./protocol";
 
-const SETTLE = 40; // [ms] in which what was foreseen wrongly is put right
-const STILL = 1e-5; // of its size: nobody sees that it moves
-const JUMP = 1.5; // sizes: it did not move there, it was put there
+const SETTLE = 40; // [ms] in which a prediction error is removed
+const STILL = 1e-5; // share of its size: smaller motions are not visible
+const JUMP = 1.5; // share of its size: a larger change is a placement, not a motion
 
 export class Track {
   private readonly at = new THREE.Vector3();
   private readonly velocity = new THREE.Vector3(); // [m/s], of simulated time
   private readonly wanted = new THREE.Vector3();
   private time = -1; // of the last report, simulated [s]
-  private between = 0; // the last two reports [s]
+  private between = 0; // time between the last two reports [s]
   private now = 0;
   private fresh = true;
 
@@ -28,14 +28,14 @@ export class Track {
       this.between = time - this.time;
       this.velocity.copy(to).sub(this.at).divideScalar(this.between);
     } else if (!to.equals(this.at)) {
-      this.velocity.set(0, 0, 0); // put elsewhere while time stands still
+      this.velocity.set(0, 0, 0); // placed elsewhere while the time stands still
     }
     this.at.copy(to);
     this.time = time;
   }
 
-  /** Moves `shown` to where it is at a simulated time [s]; `now` is the real one [ms], `size` that of
-   * what moves [m]. Returns whether one can see that it moved. */
+  /** Moves `shown` to its position at a simulated time [s]; `now` is the real time [ms], `size`
+   * that of the object [m]. Returns whether the motion is visible. */
   follow(shown: THREE.Vector3, time: number, now: number, size: number): boolean {
     const ahead = THREE.MathUtils.clamp(time - this.time, 0, 1.2 * this.between);
     this.wanted.copy(this.at).addScaledVector(this.velocity, ahead);

@@ -1,4 +1,4 @@
-// Everything that is seen in three dimensions, and what the pointer does to it.
+// Everything in the 3D view, and the effect of the pointer on it.
 import * as THREE from "three";
 import { BallTool } from "./ball";
 import type { Arrangement } from "./compared";
@@ -11,8 +11,8 @@ import { Spheres } from "./spheres";
 import { cornersOf, Stage } from "./stage";
 import { Tissue } from "./tissue";
 
-const NEAR = 1; // diagonals from the body: obstacles that are in the first view
-const FALL = 3; // diagonals from the body: ground that it may fall to, and that is in the first view
+const NEAR = 1; // diagonals from the body: obstacles within are in the first view
+const FALL = 3; // diagonals from the body: ground within, to which it may fall, is in the first view
 
 export class World {
   readonly stage: Stage;
@@ -20,13 +20,13 @@ export class World {
   readonly spheres: Spheres;
   readonly hands: Hands;
   readonly ball: BallTool;
-  /** The bounds of the whole body at rest, as far as they have been seen [m]. */
+  /** The bounds of the whole body at rest, as far as they are known [m]. */
   readonly box = new THREE.Box3();
   shown: Frame | null = null;
   private scene: SceneInfo | null = null;
   private colored = false;
-  private fitted = -1; // the scene that the camera was fitted to, as `opened` counts
-  private lookAround = false; // for obstacles, with the next status
+  private fitted = -1; // the scene that the camera was fitted to (its `opened`)
+  private lookAround = false; // includes obstacles with the next status
 
   constructor(
     canvas: HTMLCanvasElement,
@@ -76,7 +76,7 @@ export class World {
 
   build(topology: Topology): void {
     const opened = this.scene?.opened ?? -1;
-    // A cut or springs bring other nodes of the same scene: the view stays, and what is held is held.
+    // A cut or springs bring other nodes of the same scene: view and grabs stay.
     const same = opened === this.fitted;
     this.tissue.build(topology);
     this.shown = null;
@@ -93,7 +93,7 @@ export class World {
     this.fit(box);
   }
 
-  /** Everything in view, and the ground that it may fall to. */
+  /** Fits the camera to everything, and to the ground to which it may fall. */
   private fit(box: THREE.Box3): void {
     const ground = this.scene?.ground ?? null;
     const seen = box.clone();
@@ -109,7 +109,7 @@ export class World {
     this.stage.fit(seen, ground);
   }
 
-  /** Shows a frame, coloured or in the plain look. Returns whether it is one of what is built. */
+  /** Shows a frame, coloured or in the plain look. Returns false if it belongs to another topology. */
   show(frame: Frame, now: number): boolean {
     if (!this.tissue.fits(frame)) return false;
     this.tissue.show(frame, this.colored ? this.scene : null, now);
@@ -131,7 +131,7 @@ export class World {
     this.stage.changed();
   }
 
-  /** Over or beside each other: the camera turns to both. */
+  /** Arranges both bodies, over or beside each other: the camera turns to both. */
   arrange(how: Arrangement): void {
     const across = new THREE.Vector3().setFromMatrixColumn(this.stage.camera.matrixWorld, 0);
     const { compared } = this.tissue;
@@ -142,9 +142,9 @@ export class World {
     this.stage.changed();
   }
 
-  /** Sees body and obstacles as they are now, from a direction. */
+  /** Shows body and obstacles in their current places, from a direction. */
   look(from: Vec, room?: number): void {
-    // A table is larger than what matters of it.
+    // Only a part of a large object such as a table matters.
     const radii = this.scene?.obstacles.map((o) => Math.min(o.radius, this.scene!.diagonal)) ?? [];
     const boxes = this.spheres.obstaclesAt.map((at, i) =>
       new THREE.Box3().setFromCenterAndSize(new THREE.Vector3(...at), new THREE.Vector3().setScalar(2 * radii[i])));
@@ -156,7 +156,7 @@ export class World {
     this.ball.release();
   }
 
-  /** What is held is gone: another scene, a reset, or the controls. */
+  /** Removes all grabs: another scene, a reset, or loss of the controls. */
   forget(): void {
     this.hands.forget();
     this.ball.forget();
