@@ -208,7 +208,7 @@ class Studio:
     def __init__(self, camera, ground):
         self.camera = camera
         self.ground = ground  # height of the ground [m]
-        self.resolution = int(np.clip(camera.height / 5, 48, 256))  # of what casts soft shadows
+        self.resolution = int(np.clip(camera.height / 5, 48, 256))  # cells of a depth map's side
         toward, right = camera.toward, camera.right
         level = normalized(toward * [1, 0, 1])
         self.key = normalized(0.75 * level - 0.75 * right + 1.5 * np.array([0, 1, 0]))

@@ -23,7 +23,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 
-# Okabe and Ito's colours: told apart with every kind of colour vision. Markers tell them apart too.
+# Okabe and Ito's colours, which suit any colour vision. Markers differ too.
 BLUE, ORANGE, GREEN, RED, PURPLE, GREY = (
     "#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#777777")
 STYLE = {("single", 1): (BLUE, "o", "-"), ("single", 2): (BLUE, "s", "--"),

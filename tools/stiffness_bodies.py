@@ -87,7 +87,7 @@ def slivers(file, k):
             f"largest {max(sizes) / mean:.3g}")
 
 
-# name -> what writes its mesh; None: the built-in shape.
+# name -> function that writes its mesh; None: the built-in shape.
 MESHES = {"beam": None, "bone-core": bone(core), "bone-layer": bone(layer),
           "bone-end": bone(far_half), "slivers": slivers}
 

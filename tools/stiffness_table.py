@@ -81,7 +81,7 @@ def tips(summary, what):
 
 
 def compare(implicit, rest, omega):
-    """What a row says of two summaries; its difference is infinite where one of them has no end."""
+    """The row of two summaries; its difference is infinite if one of them has no end."""
     row = {"status": "finished", "difference": math.inf}
     if rest["status"] != "finished":
         row["status"] = rest["status"]

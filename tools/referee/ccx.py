@@ -58,7 +58,7 @@ def linear_elastic(young, poisson):
     return f"*ELASTIC\n{young},{poisson}\n"
 
 
-# How small the residual has to become, as a share of the mean force.
+# Required residual, as a share of the mean force.
 TOLERANCE = {stable_neo_hookean: 2e-3, ciarlet: 1e-6}
 
 

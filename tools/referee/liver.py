@@ -143,7 +143,7 @@ def values(runner):
     coarse = by_calculix(runner, "liver-linear-1", body, probes, ccx.linear_elastic)
     fine = by_calculix(runner, "liver-linear-2", finer, probes, ccx.linear_elastic)
     for quantity in probes:
-        # Quadratic elements on a smooth part: the error falls by 2^2 at least. What is left of it
+        # Quadratic elements on a smooth part: the error falls by 2^2 at least. The rest of it
         # on the scene's mesh is taken to be the same share as in linear elasticity.
         share = 4.0 / 3.0 * (fine[quantity] / coarse[quantity] - 1.0)
         value = found[quantity] * (1.0 + share)

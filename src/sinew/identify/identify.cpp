@@ -22,7 +22,7 @@
 namespace sinew {
 namespace {
 
-// A law that can be identified, with what makes a material one of it.
+// A law that can be identified, with the material values that define it.
 struct IdentifiableLaw {
   std::string_view name;
   Law law = Law::neo_hookean;

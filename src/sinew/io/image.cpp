@@ -129,7 +129,7 @@ void read_voxels(ImageBytes& bytes, const VoxelLayout& layout, LabelImage& image
   const std::size_t width = bytes_of(layout.type);
   const std::string_view data = bytes.all(layout.offset + count * width).substr(layout.offset);
 
-  // Runs of equal voxels are long: the map is asked only where the value changes.
+  // Runs of equal voxels are long, so the map is used only when the value changes.
   std::map<int, std::uint8_t> number;  // in the order of the first voxel, sorted below
   image.voxels.resize(count);
   double last = std::numeric_limits<double>::quiet_NaN();

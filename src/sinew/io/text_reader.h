@@ -42,7 +42,7 @@ class TextReader {
   bool at_line_end();       // no value is left on this line
   std::string_view peek();  // the next word, not consumed; empty at the end
 
-  // Next value, or an Error. `real` takes what std::from_chars takes for a double, nan and inf
+  // The next value, or an Error. `real` accepts every double of std::from_chars, nan and inf
   // included (the mesh doctor refuses those, with the node's number).
   std::string_view word(const Wanted& wanted);
   double real(const Wanted& wanted);

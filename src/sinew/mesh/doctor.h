@@ -49,7 +49,7 @@ struct Problem {
   // first tet of each part.
   std::vector<std::vector<Index>> first;
   std::string text;    // "3 degenerate tets (0, 7, 12): no volume"
-  std::string remedy;  // what to do; empty if repair() does it
+  std::string remedy;  // empty if repair() corrects the problem
 };
 
 struct Diagnosis {

@@ -179,7 +179,7 @@ class Translator {
     if (supplied) supply_material(mesh, number, young, poisson);
     if (young.number != 0.0) add(body, "young", std::move(young));
     add(body, "poisson", std::move(poisson));
-    add(body, "scale", value_of(1.0, where));  // in so many words: it is meant to be so large
+    add(body, "scale", value_of(1.0, where));  // explicit, so that the size causes no warning
     add(body, "center", value_of(true, where));
     add_place(words, of, body);
     const std::string name = body_name(mesh, number);

@@ -96,11 +96,11 @@ struct SceneRegion {
 struct SceneBody {
   std::string name;
   // Source of the mesh: a file or a shape.
-  std::string mesh;                       // path, relative to the scene file; empty: a shape
-  double mesh_size = 0.0;                 // of surfaces and images: mean edge [m]; 0: sinew-mesh's
-  std::optional<Vec3> fit;                // sides of the box that the file is stretched to, each
-                                          // axis by itself, from 0 on [mesh unit]; absent: as it is
-  BodyShape shape = BodyShape::file;      // file: from `mesh`
+  std::string mesh;                   // path, relative to the scene file; empty: a shape
+  double mesh_size = 0.0;             // of surfaces and images: mean edge [m]; 0: sinew-mesh's
+  std::optional<Vec3> fit;            // sides of the box that the file is stretched to, each
+                                      // axis by itself, from 0 on [mesh unit]; absent: unchanged
+  BodyShape shape = BodyShape::file;  // file: from `mesh`
   std::array<int, 3> cells = {4, 4, 16};  // beam, box
   Vec3 size = Vec3(0.1, 0.1, 0.4);        // beam, box [m]
   double jitter = 0.0;                    // beam, box: share of a cell's edge

@@ -1,4 +1,4 @@
-// Where the nodes of a body start a run from, other than at rest.
+// Start positions of a body's nodes other than the rest positions.
 #pragma once
 
 #include <vector>

@@ -71,7 +71,7 @@ Value judged(const Plan& plan, const Quantity& q, const Reference& reference, do
   return v;
 }
 
-// False: stopped on the way, nothing added.
+// Returns false if it was stopped; then nothing is added.
 bool run_one(const Plan& plan, const SuiteOptions& options, CaseResult& result) {
   Trial trial;
   trial.law = plan.law->name;
