@@ -1,4 +1,4 @@
-// Four floats that the processor adds and multiplies at once: a Vec3 in single precision.
+// Four floats that the processor adds and multiplies together: a Vec3 in single precision.
 #pragma once
 
 #include <vector>
