@@ -12,7 +12,8 @@
 
 namespace sinew {
 
-// A condition on one to four nodes. The position of the node or edge relative to what it touches is
+// A condition on one to four nodes. The position of the node or edge relative to the feature that
+// it touches is
 //
 //   r(x) = sum_a weight_a x_a - anchor,      gap(x) = normal . r(x) >= 0
 //
@@ -26,7 +27,7 @@ struct Contact {
   std::array<double, 4> weight = {};             // [-]
   int count = 0;                                 // nodes used, 1 to 4
   Vec3 normal =
-      Vec3::UnitY();  // [-] unit, points out of what is touched (triangle, second edge, collider)
+      Vec3::UnitY();  // [-] unit, points out of the touched triangle, second edge or collider
   Vec3 anchor = Vec3::Zero();  // [m] on the collider's surface, at the end of the step
   Vec3 way = Vec3::Zero();  // [m] displacement of the collider's surface at the anchor in the step
   double gap = 0.0;         // [m] at the end of the step; < 0: inside
@@ -47,7 +48,7 @@ struct ContactReach {
   double plane = 0.0;
 };
 
-// The position of the node or edge relative to what it touches [m]: r(x) above.
+// The position of the node or edge relative to the touched feature [m]: r(x) above.
 inline Vec3 contact_offset(const Contact& c, const std::vector<Vec3>& x) {
   Vec3 r = -c.anchor;
   for (int a = 0; a < c.count; ++a)

@@ -58,8 +58,8 @@ std::uint32_t slot_of(Index node, const State& state, ContactScratch& s) {
 }
 
 // The smallest velocity along the normal without a bounce [m/s]. Positions follow velocities: the
-// gap at the end of the step is gap + h (v - velocity). It must be at least 0, or at least the
-// depth at the start less the share that is recovered.
+// gap at the end of the step is gap + h (v - velocity). It must be at least 0. If the step starts
+// with a penetration, the part of it that is not recovered in this step may remain.
 double least_without_bounce(const Arrival& arrival, double h) {
   const double start = arrival.contact->gap - h * arrival.velocity;
   const double end =

@@ -16,7 +16,7 @@ inline Vec3 unit(const Vec3& v) {
   return n > 0.0 ? Vec3(v / n) : Vec3(Vec3::Zero());
 }
 
-// The parameter in [0, 1] of the point of the segment a b that is nearest to p; 0 where a = b.
+// The parameter in [0, 1] of the point of the segment a b that is nearest to p; 0 if a = b.
 inline double nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 e = b - a;
   const double length2 = e.squaredNorm();

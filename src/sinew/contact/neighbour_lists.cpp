@@ -128,7 +128,7 @@ void NeighbourLists::find_close(const NearPair& pair, double range, double skin,
   }
 }
 
-// The share of its skin [m] that a part's lists have used, or that parts outside the lists have
+// The part of its skin [m] that a part's lists have used, or that parts outside the lists have
 // used by coming closer; infinite if the lists may miss pairs. Sets `before`. `most`: upper bound
 // of the relative motion of the owners in the step.
 double NeighbourLists::used_of(NearPart& near, double range, double skin, double most,

@@ -158,9 +158,9 @@ void add_rod_contacts(const MovingRod& rod, const Skin& skin, const std::vector<
       edges.push_back({c.id.feature, index, c, hit->facing, hit->crossed});
     }
   }
-  // An edge counts once, if the rod is outside for the sum of its triangles. The edge need not be
-  // nearest for both triangles: in a step with deep penetration the two may differ, and the contact
-  // would be missed.
+  // An edge counts once, if the rod is on the outside of its triangles (sum of `facing` > 0). The
+  // edge need not be nearest for both triangles: in a step with deep penetration the two may
+  // differ, and the contact would be missed.
   std::sort(edges.begin(), edges.end(), [](const EdgeHit& a, const EdgeHit& b) {
     return std::pair(a.edge, a.triangle) < std::pair(b.edge, b.triangle);
   });

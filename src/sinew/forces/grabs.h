@@ -1,5 +1,5 @@
-// Grabs: springs of rest length zero from nodes to points that are moved from outside, such as a
-// hand that pulls. For node i with stiffness k_i and target p_i
+// Grabs: springs of rest length zero from nodes to points that a user moves, such as a hand. For
+// node i with stiffness k_i and target p_i
 //
 //   W = k_i / 2 |p_i - x_i|^2,   force k_i (p_i - x_i),   second derivative k_i
 //

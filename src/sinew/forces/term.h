@@ -48,7 +48,7 @@ struct Element {
 //   account                  where energy() is counted
 //   isotropic                whether B is a constant times the unit matrix, at every x
 //   energy(at)               W [J]
-//   add_forces(at, f)        f -= dW/dx [N] (nodes); on pinned nodes only where it is elastic
+//   add_forces(at, f)        f -= dW/dx [N] (nodes); on pinned nodes only if elastic
 //   for_each_element(at, tangent, visit)
 //                            visit(Element) for every part of d2W/dx2, always in the same order
 //

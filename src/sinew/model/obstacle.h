@@ -21,7 +21,7 @@ struct Obstacle {
   Mat3 rotation = Mat3::Identity();  // its own axes in the world, as columns, before the path
   double friction = 0.5;             // [-] Coulomb's mu >= 0; hard
   double restitution = 0.0;          // [-] in [0, 1], of explicit steps; hard
-  bool listed = true;  // has a place in tables, readings and the host's handles; false: the ground
+  bool listed = true;  // appears in tables, readings and the host's handles; false: the ground
 
   bool hard() const { return stiffness == 0.0; }
   // The radius of a sphere, the only shape that can be soft [m]; 0 for other shapes.

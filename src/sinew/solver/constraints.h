@@ -27,7 +27,7 @@ struct ConstraintError {
 // (minimise_augmented_lagrangian). The ground is a plane obstacle, so its contacts are among the
 // contacts.
 //
-// The stiffness k of a constraint on q is ten times the resistance of its nodes one by one, 1 /
+// The stiffness k of a constraint on q is ten times the resistance of its single nodes, 1 /
 // sum_i (|dq/dx_i|^2 / D_i) with D_i the diagonal of M inertia + C rate + K. This bounds the share
 // of the error that a pass leaves, and does not worsen the condition of the tangent.
 class Constraints {
@@ -98,7 +98,7 @@ class Constraints {
   const Model& model_;
   double hardness_ = 1.0;
   std::vector<double> spring_stiffness_;  // [N/m] (limited)
-  std::vector<double> cell_stiffness_;    // [N/m5] (cells; 0: no condition)
+  std::vector<double> cell_stiffness_;    // [N/m5] (cells; 0: no limit)
   Reactions now_;
   std::vector<SpringTangent> spring_tangent_;
   std::vector<double> cell_tangent_;

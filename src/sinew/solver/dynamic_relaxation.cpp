@@ -18,7 +18,7 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
                                              double time, const StaticOptions& options,
                                              StaticProgress progress, State& state) {
   constexpr int few = 10;        // Newton steps
-  constexpr double near = 1e-4;  // Newton's method is tried at this share of the load
+  constexpr double near = 1e-4;  // Newton's method is tried below this share of the load
   double h = 1.0 / 30.0;         // [s]
   double pull = 1.0;             // the force that still moves the body, as a share of the load
   double fastest = 0.0;          // |v|^2

@@ -18,7 +18,7 @@ struct ImplicitOptions {
   Scheme scheme = Scheme::sdirk2;
   double tolerance = 1e-6;  // see NewtonReport::residual
   int max_newton = 50;      // Newton steps before the step is cut in half
-  bool single = false;      // forces in single precision, where it may_take_single()
+  bool single = false;      // forces in single precision if may_take_single()
   Deadline deadline = {};   // then the current iterate becomes the step, whatever its residual
 };
 
@@ -38,7 +38,7 @@ class ImplicitStepper {
   // directions at x_n; then v = (x - x_n) / h (Martin et al. 2011). SDIRK2 (Alexander 1977) takes
   // two such steps of g h, g = 1 - sqrt(1/2): the first from x_n and v_n gives v_1, the second
   // starts from x_n + (1 - g) h v_1 and v_n + (1 - g)/g (v_1 - v_n). Both schemes are L-stable.
-  // Dashpots and drag see the velocity at the end of the (part) step.
+  // Dashpots and drag use the velocity at the end of the (part) step.
   //
   // Contacts, with friction, and limits hold at the end of the step (solver/constraints.h). A step
   // in which one of them acts is a step of backward Euler: SDIRK2 would carry the change of

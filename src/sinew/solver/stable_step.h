@@ -33,7 +33,8 @@ StableStep find_stable_step(const Model& model, const Controls& controls,
 double watch_stable_step(const Model& model, const Controls& controls, const std::vector<Vec3>& x,
                          double h, std::vector<Vec3>& mode, ForceEvaluator& forces);
 
-// The text of a spring, such as
+// The description of a spring in messages:
+// "spring 12 (body beam, node 3 to body beam, node 4): k = ..., l0 = ..., c = ...".
 std::string describe_spring(const Model& model, Index spring);
 
 }  // namespace sinew

@@ -168,7 +168,7 @@ std::vector<Resting> resting_groups(const Model& model, const Controls& controls
   return out;
 }
 
-// Lowers or lifts bodies that only a plane holds onto it, along its normal.
+// Moves bodies that only a plane holds onto that plane, along its normal.
 void put_down(const Model& model, const Controls& controls, const std::vector<Resting>& resting,
               State& state) {
   const std::vector<Index> unheld = unheld_groups(model, controls);
