@@ -3,8 +3,8 @@
 //
 // It acts on the cells of the network law's shear energy, the tets around each edge (edge_cells.h),
 // or on each tet separately if beta is 1. So every oscillation that keeps the volume is damped in
-// proportion to its elastic energy. On single tets, which lock, a bar of 3 cells would be damped 40
-// % too strongly in torsion.
+// proportion to its elastic energy. On single tets, which lock, a bar of 3 cells would be damped
+// 40 % too strongly in torsion.
 #pragma once
 
 #include <span>

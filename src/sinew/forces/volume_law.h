@@ -37,9 +37,9 @@ inline Corners volume_gradient_change(const Vec3& e1, const Vec3& e2, const Vec3
 // for tets without a volume energy of their own. A tet can invert inside a node cell that keeps its
 // volume. Only the shear stiffness around it resists, so the guard is proportional to mu. It does
 // not act on tets that keep more than the share t of their volume, starts softly and is stiff only
-// near 0; below 0 its stiffness stays the same as at 0. (The clamped bar W(k), E = 15 kPa, nu =
-// 0.3: 8 of 1,280 tets are inverted without it, and 20 of 10,240 with a fifth of this strength;
-// none with it.)
+// near 0; below 0 its stiffness stays the same as at 0.
+// (The clamped bar W(k), E = 15 kPa, nu = 0.3: 8 of 1,280 tets are inverted without it, and 20 of
+// 10,240 with a fifth of this strength; none with it.)
 inline constexpr double guard_threshold = 0.4;
 inline constexpr double guard_factor = 40.0;
 inline constexpr double guard_margin = 0.1;  // largest decrease of v/V in a step

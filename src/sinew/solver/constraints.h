@@ -27,9 +27,9 @@ struct ConstraintError {
 // (minimise_augmented_lagrangian). The ground is a plane obstacle, so its contacts are among the
 // contacts.
 //
-// The stiffness k of a constraint on q is ten times the resistance of its single nodes, 1 /
-// sum_i (|dq/dx_i|^2 / D_i) with D_i the diagonal of M inertia + C rate + K. This bounds the share
-// of the error that a pass leaves, and does not worsen the condition of the tangent.
+// The stiffness k of a constraint on q is ten times the resistance of its single nodes,
+// 1 / sum_i (|dq/dx_i|^2 / D_i) with D_i the diagonal of M inertia + C rate + K. This bounds the
+// share of the error that a pass leaves, and does not worsen the condition of the tangent.
 class Constraints {
  public:
   // inertia [1/s2] and rate [1/s] as in Objective. friction: whether contacts have friction.

@@ -53,9 +53,9 @@ class StaticSolver {
   StepReport solve(const Controls& controls, double time, const StaticOptions& options,
                    State& state);
 
-  // Solves K u = rhs for the free nodes with the tangent at `at` by conjugate gradients, to |K u -
-  // rhs| <= tolerance |rhs|. u of the other nodes is kept and acts as a prescribed displacement.
-  // Returns the number of products.
+  // Solves K u = rhs for the free nodes with the tangent at `at` by conjugate gradients, to
+  // |K u - rhs| <= tolerance |rhs|. u of the other nodes is kept and acts as a prescribed
+  // displacement. Returns the number of products.
   int solve_tangent(const Configuration& at, const std::vector<Vec3>& rhs, double tolerance,
                     std::vector<Vec3>& u);
 
