@@ -14,7 +14,7 @@ BoxTree::BoxTree(std::span<const Vec3> centres, Index leaf_size) : leaf_size_(le
   item_box_.resize(item_.size());
 }
 
-// Halves across the longest side, until leaf_size_ are left.
+// Splits the items in two across the longest side, until at most leaf_size_ are left.
 Index BoxTree::grow(std::span<const Vec3> centres, Range items) {
   const auto self = static_cast<Index>(node_.size());
   node_.push_back({items, -1});
@@ -60,7 +60,7 @@ void BoxTree::refit(std::span<const Box> boxes) {
 
 void BoxTree::find(const Box& box, std::vector<Index>& items) const {
   if (node_.empty()) return;
-  std::array<Index, 64> stack;  // one entry a level; halving 2^31 items takes 29 levels
+  std::array<Index, 64> stack;  // one entry per level; halving 2^31 items takes 29 levels
   std::size_t depth = 0;
   stack[depth++] = 0;
   while (depth > 0) {

@@ -11,7 +11,7 @@
 
 namespace sinew {
 
-// Axis-parallel [m]; empty until something is added.
+// An axis-aligned box [m]; empty until something is added.
 struct Box {
   Vec3 lo = Vec3::Constant(std::numeric_limits<double>::infinity());
   Vec3 hi = Vec3::Constant(-std::numeric_limits<double>::infinity());
@@ -35,7 +35,7 @@ struct Box {
   }
 };
 
-// Around the nodes at positions x [m] (nodes of the model).
+// The box around the nodes at positions x [m] (nodes of the model).
 template <std::size_t n>
 Box box_around(const std::array<Index, n>& nodes, const std::vector<Vec3>& x) {
   Box box;
@@ -45,19 +45,19 @@ Box box_around(const std::array<Index, n>& nodes, const std::vector<Vec3>& x) {
 
 class BoxTree {
  public:
-  // The shape of the tree, from the items' centres: nearby ones share a branch. Leaves hold at most
-  // `leaf_size` items.
+  // Builds the tree from the centres of the items: items near each other share a branch. A leaf
+  // holds at most `leaf_size` items.
   explicit BoxTree(std::span<const Vec3> centres, Index leaf_size = 4);
   BoxTree() = default;
 
-  // The boxes of the items as they are now (items).
+  // Sets the current boxes of the items (items).
   void refit(std::span<const Box> boxes);
 
-  // Box around all items.
+  // The box around all items.
   const Box& bounds() const { return box_[0]; }
   bool empty() const { return item_.empty(); }
 
-  // The items leaf by leaf.
+  // The items of each leaf.
   std::vector<std::span<const Index>> leaves() const;
 
   // Appends the items whose boxes overlap `box`, in the tree's order.
@@ -73,8 +73,8 @@ class BoxTree {
   Index leaf_size_ = 4;
   std::vector<Node> node_;
   std::vector<Box> box_;       // (nodes of the tree)
-  std::vector<Index> item_;    // items, leaf by leaf
-  std::vector<Box> item_box_;  // in that order
+  std::vector<Index> item_;    // items, in the order of the leaves
+  std::vector<Box> item_box_;  // in the order of item_
 };
 
 }  // namespace sinew

@@ -17,7 +17,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Floats = hn::ScalableTag<float>;
 using Indices = hn::RebindToSigned<Floats>;
 
-// Which of the boxes from i on overlap `with` (lo x, y, z, hi x, y, z).
+// The mask of the boxes from i on that overlap `with` (lo x, y, z, hi x, y, z).
 HWY_INLINE hn::Mask<Floats> overlap(const float* const* side, std::size_t i, std::size_t count,
                                     const float* with) {
   const Floats f;
@@ -42,7 +42,7 @@ std::size_t find(const float* const* side, const Index* item, std::size_t count,
   return found;
 }
 
-// Appends them to other sides and items, each side by `shift` farther out.
+// Appends the overlapping boxes to other sides and items; `shift` is added to each side.
 std::size_t copy(const float* const* side, const Index* item, std::size_t count, const float* with,
                  const float* shift, float* const* to_side, Index* to_item) {
   const Floats f;
@@ -87,7 +87,7 @@ HWY_EXPORT(gaps);
 
 namespace {
 
-constexpr Index longest_vector = 64;  // floats, of any instruction set
+constexpr Index longest_vector = 64;  // floats in a vector, for any instruction set
 
 float rounded_down(double x) {
   return static_cast<float>(x - 1e-6 * std::abs(x));

@@ -1,4 +1,4 @@
-// Boxes in a structure of arrays, to compare one with many (SIMD).
+// Boxes as a structure of arrays: one box is compared with many (SIMD).
 #pragma once
 
 #include <array>
@@ -13,24 +13,24 @@ class Boxes {
   Index count() const { return count_; }
   void clear() { count_ = 0; }
 
-  // Rounded outwards to single precision; `item`: what it is the box of.
+  // Adds the box of `item`, rounded outwards to single precision.
   void add(const Box& box, Index item);
 
-  // Those of `other` that overlap `box`, from the lowest to the highest of their places shifted by
-  // 0 and by `way`, and larger by `off` [m] all around.
+  // Adds the boxes of `other` that overlap `box`. Each added box covers its displacements from 0 to
+  // `way` and is larger by `off` [m] on all sides.
   void add_overlapping(const Boxes& other, const Box& box, const Vec3& way, double off);
 
   // The items whose boxes overlap `box`, in their order.
   void find(const Box& box, std::vector<Index>& items) const;
 
-  // How far each is from `box` at least, < 0 where they overlap [m] (boxes).
+  // The lower bound of the distance of each box from `box` [m] (boxes); < 0: they overlap.
   void gaps_to(const Box& box, std::vector<float>& gaps) const;
 
  private:
   void make_room(Index more);
 
-  // lo x, y, z, hi x, y, z [m] and the items; longer than count_ by the longest vector, which
-  // kernels may fill.
+  // lo x, y, z, hi x, y, z [m] and the items. The arrays are longer than count_ by the length of
+  // the longest vector, because the kernels write whole vectors.
   std::array<std::vector<float>, 6> side_;
   std::vector<Index> item_;
   Index count_ = 0;

@@ -8,7 +8,8 @@
 namespace sinew {
 namespace {
 
-// Triangles in a part: more make each look at a part dearer, fewer need more of them.
+// Triangles in a part. With more triangles the check of a part costs more; with fewer there are
+// more parts.
 constexpr Index part_size = 80;
 
 float rounded_down(double x) {
@@ -19,7 +20,7 @@ Box box_of(const Vec3& x) {
   return {x, x};
 }
 
-// Appends what is near a key, nearest first.
+// Appends the items near a key, nearest first.
 void close_key(std::vector<std::pair<float, Index>>& near, Index key, NeighbourList& list) {
   if (near.empty()) return;
   std::sort(near.begin(), near.end());
@@ -102,7 +103,7 @@ void fit_boxes(SurfacePart& part, const NarrowPhase& touching, const std::vector
   part.fitted = true;
 }
 
-// Marks the nodes that are neighbours of the node, next to those that are marked.
+// Marks the neighbours of the node, in addition to the nodes that are marked already.
 void NearFinder::mark_neighbours(Index slot, Scratch& scratch) const {
   for (const Index i : narrow_phase_.neighbours(slot)) scratch.mark[uz(i)] = scratch.now;
 }
@@ -177,7 +178,7 @@ void NearFinder::make(NearPart& near, double more, bool swept, const Moves& move
   if (near.others.empty()) return;
   const SurfacePart& part = parts_[uz(near.part)];
   const Search search = {part, near.owner, part.owner == near.owner, more, swept, moves};
-  const bool with_edges = part.owner <= near.owner;  // the owner that comes first keeps them
+  const bool with_edges = part.owner <= near.owner;  // the first owner of a pair holds the edges
 
   Scratch& scratch = scratch_.local();
   scratch.mark.resize(moves.to.size(), scratch.now);
@@ -195,7 +196,7 @@ void NearFinder::make(NearPart& near, double more, bool swept, const Moves& move
   }
   const Box around = part.track.end_box().grown(range + more);
   for (const NearPart::Other& near_other : near.others) {
-    // Seen from the part, the other comes from `way`, give or take what the nodes of both do.
+    // Relative to the part, the other part moves by `way`; the nodes deviate by at most `off`.
     const SurfacePart& other = parts_[uz(near_other.part)];
     Vec3 way = Vec3::Zero();
     double off = 0.0;

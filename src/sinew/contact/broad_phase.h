@@ -1,4 +1,4 @@
-// Parts of a surface, some tens of triangles each, and the lists of features near a part.
+// Parts of a surface, each of some tens of triangles, and the lists of features near a part.
 #pragma once
 
 #include <tbb/enumerable_thread_specific.h>
@@ -14,10 +14,10 @@ namespace sinew {
 
 // Items by key: item[start[k] .. start[k + 1]) belong to key[k].
 struct NeighbourList {
-  std::vector<Index> key;    // rising
+  std::vector<Index> key;    // ascending
   std::vector<Index> start;  // (keys + 1)
-  std::vector<Index> item;   // by `far`, then rising, within a key
-  std::vector<float> far;    // how far they were when the list was made, or less [m] (items)
+  std::vector<Index> item;   // within a key: by `far`, then ascending
+  std::vector<float> far;    // lower bound of the distance when the list was made [m] (items)
 
   Index count() const { return static_cast<Index>(key.size()); }
   std::span<const Index> of(Index k) const {
@@ -35,13 +35,13 @@ struct NeighbourList {
 // the motion of all nodes of its triangles.
 struct SurfacePart {
   Index owner = 0;
-  std::vector<Index> nodes;      // node slots, rising
-  std::vector<Index> triangles;  // rising
-  std::vector<Index> edges;      // that may meet others, rising
+  std::vector<Index> nodes;      // node slots, ascending
+  std::vector<Index> triangles;  // ascending
+  std::vector<Index> edges;      // edges that may touch others, ascending
   RigidMotionBound track;
 
-  // At the end of the step, where `fitted`: of the triangles, of edges that are sharp to others (0)
-  // and to the own body (1), and of those that are not.
+  // Boxes at the end of the step, valid if `fitted`: of the triangles; of the edges that are sharp
+  // to other bodies (0) and to the own body (1); of the edges that are not.
   Boxes triangle_boxes;
   std::array<Boxes, 2> sharp_edges, other_edges;
   bool fitted = false;
@@ -54,38 +54,39 @@ std::vector<SurfacePart> parts_of(Index owner, const NarrowPhase& touching,
 // Fits the part's boxes to the end of the step.
 void fit_boxes(SurfacePart& part, const NarrowPhase& touching, const std::vector<Vec3>& to);
 
-// What of an owner's surface is near a part of another's, or of its own.
+// The features of an owner's surface that are near a part of another owner, or of the same one.
 struct NearPart {
   Index part = 0;
   Index owner = 0;
   NeighbourList nodes;  // node slots of the part, triangles of the owner
   NeighbourList edges;  // edges of the part, edges of the owner
-  double moved = 0.0;   // how far they have moved against each other since then, at most [m]
-  double before = 0.0;  // of that, until the last check [m]
+  double moved = 0.0;   // upper bound of their relative motion since then [m]
+  double before = 0.0;  // the part of it up to the last check [m]
 
   struct Other {
     Index part;
     RigidMotionBound::Mark mark;
   };
-  bool known = false;           // the lists can be used again
-  double reach = 0.0;           // they are good for [m]
-  RigidMotionBound::Mark mark;  // of the part when they were made
-  std::vector<Other> others;    // the owner's parts that were close enough to be in them, rising
+  bool known = false;           // the lists are valid for later steps too
+  double reach = 0.0;           // the reach that the lists were made for [m]
+  RigidMotionBound::Mark mark;  // of the part, when the lists were made
+  std::vector<Other> others;    // the owner's parts within range at that time, ascending
 };
 
-// Fills lists. Any number of threads may call make() at a time.
+// Makes the lists. Several threads may call make() at the same time.
 class NearFinder {
  public:
   NearFinder(const NarrowPhase& touching, const std::vector<SurfacePart>& parts)
       : narrow_phase_(touching), parts_(parts) {}
 
-  // The lists of a part with its `others`, whose boxes have been fitted. They hold what comes
-  // within `more` [m] of its range; where `swept`, what does so in this step.
+  // Makes the lists of a part with its `others`, whose boxes have been fitted. The lists hold the
+  // features within `more` [m] of its range at the end of the step; with `swept`, those that come
+  // that near during the step.
   void make(NearPart& near, double more, bool swept, const Moves& moves);
 
  private:
   struct Scratch {
-    Boxes triangles, sharp_edges, other_edges;  // that may be near a node of the part
+    Boxes triangles, sharp_edges, other_edges;  // those that may be near the part
     std::vector<Index> found;
     std::vector<std::pair<float, Index>> near;
     std::vector<std::uint32_t> mark;  // (nodes of the model)

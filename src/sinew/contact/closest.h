@@ -11,8 +11,8 @@ namespace sinew {
 
 using Corners = std::array<Vec3, 3>;
 
-// Barycentric weights of the point of the triangle that is nearest to p; exact zeros for what its
-// edge or corner does not have.
+// Barycentric weights of the point of the triangle that is nearest to p. If that point is on an
+// edge or at a corner, the other weights are exactly zero.
 inline Vec3 nearest_in_triangle(const Vec3& p, const Corners& t) {
   const Vec3 ab = t[1] - t[0];
   const Vec3 ac = t[2] - t[0];
@@ -38,7 +38,7 @@ inline Vec3 nearest_in_triangle(const Vec3& p, const Corners& t) {
   if (va <= 0.0 && e1 >= 0.0 && e2 >= 0.0 && e1 + e2 > 0.0) return Vec3(0, e2, e1) / (e1 + e2);
   const double sum = va + vb + vc;
   if (sum > 0.0) return Vec3(va, vb, vc) / sum;
-  return Vec3(1, 0, 0);  // of a triangle without area: a corner of it, the edges are looked at too
+  return Vec3(1, 0, 0);  // a triangle without area: one of its corners; callers test the edges too
 }
 
 // Shares s, t in [0, 1] of the nearest points a0 + s (a1 - a0), b0 + t (b1 - b0) of two segments.
@@ -68,11 +68,11 @@ inline std::array<double, 2> nearest_of_segments(const Vec3& a0, const Vec3& a1,
 
 // The nearest points of the segment from a to b and a triangle.
 struct NearestPair {
-  double share = 0.0;          // of the way from a to b [-]
+  double share = 0.0;          // along the segment from a to b [-]
   Vec3 weight = Vec3::Zero();  // barycentric, of the triangle's point [-]
   Vec3 on_segment = Vec3::Zero();
   Vec3 on_triangle = Vec3::Zero();
-  double distance = 0.0;  // 0 where the segment goes through the triangle
+  double distance = 0.0;  // 0: the segment passes through the triangle
 };
 
 inline NearestPair nearest_of_segment_and_triangle(const Vec3& a, const Vec3& b, const Corners& t) {

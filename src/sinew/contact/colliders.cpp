@@ -12,14 +12,14 @@
 namespace sinew {
 namespace {
 
-// A hard obstacle with a shape over a step.
+// A hard obstacle with a shape, during a step.
 template <SolidShape S>
 struct Moving {
   const Obstacle* obstacle = nullptr;
   const S* shape = nullptr;
   Index index = -1;
   Pose before, after;
-  Eigen::AlignedBox3d box;  // around its whole way, with the reach; infinite for a plane
+  Eigen::AlignedBox3d box;  // around its whole motion, with the reach; infinite for a plane
 };
 
 template <SolidShape S>
@@ -28,7 +28,8 @@ Moving<S> moving(const Obstacle& o, const S& shape, Index index, double t0, doub
   Moving<S> m{&o, &shape, index, obstacle_pose(o, t0), obstacle_pose(o, t1), {}};
   const bool turns = !m.before.turn.isApprox(m.after.turn, 0.0);
   for (const Pose* pose : {&m.before, &m.after}) {
-    // What turns may stand out in between by the arrow of an arc: its whole ball is enough.
+    // During a rotation the shape can reach beyond both end poses. The box of its bounding ball
+    // covers all of them.
     const Vec3 half = turns ? Vec3::Constant(shape.farthest()) : shape.extent(pose->turn);
     m.box.extend(pose->center - half - Vec3::Constant(reach));
     m.box.extend(pose->center + half + Vec3::Constant(reach));
@@ -38,8 +39,9 @@ Moving<S> moving(const Obstacle& o, const S& shape, Index index, double t0, doub
 
 // ---- nodes ----
 
-// The surface that a node going from q0 to q1 (own frame) has to stay outside of, or none: the
-// nearest at q1 if that is on the side that it came from, else where it came in.
+// The point of the surface that a node moving from q0 to q1 (in the shape's frame) must stay
+// outside of, or none: the nearest point at q1 if it is on the side that the node came from, else
+// the point of entry.
 template <SolidShape S>
 std::optional<shapes::SurfacePoint> wall_for(const S& shape, const Vec3& q0, const Vec3& q1,
                                              double reach) {
@@ -48,7 +50,7 @@ std::optional<shapes::SurfacePoint> wall_for(const S& shape, const Vec3& q0, con
   if (!within && last.distance > (q1 - q0).norm()) return {};
 
   const shapes::SurfacePoint first = shape.surface(q0);
-  const bool through = last.distance >= 0.0;  // if it was inside at all, it has come out again
+  const bool through = last.distance >= 0.0;  // a node that was inside has left the shape again
   std::optional<shapes::SurfacePoint> side;
   if (first.distance <= 0.0) {
     if (!through || first.normal.dot(last.normal) < 0.0) side = first;
@@ -61,7 +63,7 @@ std::optional<shapes::SurfacePoint> wall_for(const S& shape, const Vec3& q0, con
   return within && agree ? last : *side;
 }
 
-// When the gap to a wall became 0, of gaps at the start and at the end.
+// The share of the step after which the gap becomes 0, from the gaps at its start and end.
 double moment_of(double before, double after) {
   if (after >= 0.0) return 1.0;
   return before <= 0.0 ? 0.0 : before / (before - after);
@@ -91,8 +93,8 @@ void add_node(const Moving<S>& m, Index node, const std::vector<Vec3>& from,
 
 // ---- triangles ----
 
-// Which sides of a box a node is beyond at both ends of its way: as bits. What three nodes share,
-// the triangle between them is beyond too, all the way.
+// The sides of a box that a node is beyond at both ends of its motion, as bits. If three nodes
+// share a bit, their triangle is beyond that side during the whole step.
 unsigned beyond(const Eigen::AlignedBox3d& box, const Vec3& x0, const Vec3& x1) {
   unsigned bits = 0;
   for (int a = 0; a < 3; ++a) {
@@ -102,7 +104,7 @@ unsigned beyond(const Eigen::AlignedBox3d& box, const Vec3& x0, const Vec3& x1) 
   return bits;
 }
 
-// Whether no edge of the triangle is longer at rest [m].
+// Whether every edge of the triangle is at most `longest` at rest [m].
 bool is_small(const Model& model, const Triangle& t, double longest) {
   const auto& x = model.rest_position;
   const auto is_short = [&](std::size_t a, std::size_t b) {
@@ -111,7 +113,7 @@ bool is_small(const Model& model, const Triangle& t, double longest) {
   return is_short(0, 1) && is_short(1, 2) && is_short(2, 0);
 }
 
-// Around the way of a rod, with the reach.
+// The box around the motion of a rod, with the reach.
 Eigen::AlignedBox3d box_around(const MovingRod& rod, double reach) {
   Eigen::AlignedBox3d box;
   for (const Vec3* end : {&rod.a0, &rod.b0, &rod.a1, &rod.b1}) box.extend(*end);
@@ -169,7 +171,7 @@ void add_triangles(const Model& model, const Moving<S>& m, std::size_t body,
   }
 }
 
-// Boxes around the ways of the bodies' surfaces.
+// The boxes around the motion of the bodies' surfaces.
 std::vector<Eigen::AlignedBox3d> boxes_of_bodies(const Model& model, const std::vector<Vec3>& from,
                                                  const std::vector<Vec3>& to) {
   std::vector<Eigen::AlignedBox3d> boxes(model.bodies.size());
@@ -185,7 +187,7 @@ std::vector<Eigen::AlignedBox3d> boxes_of_bodies(const Model& model, const std::
   return boxes;
 }
 
-// Gives the edges numbers: those of both their triangles are the same.
+// Numbers the edges: the two triangles of an edge get the same number.
 void number_edges(Skin& skin) {
   struct Side {
     Edge edge;
@@ -218,7 +220,7 @@ void build_skin(Model& model) {
   std::vector<bool> on(uz(model.body_node_count()), false);
   for (const Triangle& t : skin.triangles)
     for (const Index node : t) on[uz(node)] = true;
-  // Single masses, which no tet has, are all surface.
+  // A single mass, which belongs to no tet, is part of the surface.
   std::vector<bool> in_tet(on.size(), false);
   for (const Tet& tet : model.tets)
     for (const Index node : tet) in_tet[uz(node)] = true;
@@ -249,8 +251,9 @@ void build_skin(Model& model) {
 
 namespace {
 
-// Of a plane. Most nodes stay clear of it, on its free side and out of reach at both ends of the
-// step: two products tell. The others take the way of every shape, with the same result.
+// Contacts with a plane. Most nodes are in front of it and out of reach at both ends of the step:
+// two dot products show that. The other nodes are treated like those of any shape, with the same
+// result.
 void add_nodes(const Model& model, const Moving<shapes::Plane>& plane,
                const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
                std::vector<Contact>& out) {
@@ -292,7 +295,7 @@ void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
   for (std::size_t o = 0; o < model.obstacles.size(); ++o) {
     const Obstacle& obstacle = model.obstacles[o];
     if (!obstacle.hard()) continue;
-    std::visit(Overloaded{[](const shapes::Mesh&) {},  // a surface: find_surfaces() has it
+    std::visit(Overloaded{[](const shapes::Mesh&) {},  // found by find_surfaces()
                           [&](const shapes::Plane& shape) {
                             find_with_plane(obstacle, shape, static_cast<Index>(o));
                           },
@@ -319,7 +322,8 @@ void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
         model.obstacles.begin(), model.obstacles.end(),
         [&](const Obstacle& o) { return o.mesh() != nullptr && o.mesh()->nodes.contains(vertex); });
     if (found == model.obstacles.end()) continue;
-    // r and the normal both change their sign where the obstacle is what touches: the gap does not.
+    // If the obstacle's node or edge comes first, r and the normal both change sign; the gap does
+    // not.
     const double sign = c.node[0] >= bodies ? -1.0 : 1.0;
     Contact out = c;
     out.node = {-1, -1, -1, -1};

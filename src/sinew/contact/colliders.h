@@ -1,4 +1,4 @@
-// Contacts of bodies with the shapes of obstacles (model/shapes/), the ground among them.
+// Contacts of bodies with the shapes of obstacles (model/shapes/), including the ground.
 // docs/methods/obstacles.md.
 #pragma once
 
@@ -9,22 +9,23 @@
 
 namespace sinew {
 
-// Adds the surface of the bodies that find_collider_contacts() looks at: Model::skin. Call after
-// the last add_body; does nothing where there is one already.
+// Builds Model::skin: the surface of the bodies that find_collider_contacts() uses. Call it after
+// the last add_body; it does nothing if the skin has been built already.
 void build_skin(Model& model);
 
 // Contacts of a step from positions `from` at time t0 to `to` at time t1 [m] (nodes) with all hard
-// obstacles but meshes, into `out` (which is cleared), sorted by id:
+// obstacles except meshes. They are written to `out` (which is cleared), sorted by id:
 //
 //   node against a shape: every node of the surface whose gap at `to` is below `reach` [m], and
-//     every node that went into or through the shape on the way, relative to the moving shape. If
-//     the shortest way out is not on the side that the node came from, the normal is that of the
-//     place where it entered.
+//     every node that entered or passed through the shape during the step, relative to the moving
+//     shape. If the nearest surface point is not on the side that the node came from, the normal
+//     is that of the point of entry.
 //   triangle against a rod of a shape (a small sphere or capsule, the edges and corners of a box or
-//     cylinder): what is smaller than the triangles slips between their nodes. One to three nodes
-//     with barycentric weights. The shape says which rods it has for a body's longest edge.
+//     cylinder): a shape that is smaller than the triangles could slip between their nodes. The
+//     contact has one to three nodes with barycentric weights. The shape gives its rods for the
+//     longest edge of a body.
 //
-// Nodes whose motion is given do not touch; nor does a triangle with no free corner. The result
+// Nodes whose motion is prescribed and triangles without a free corner have no contacts. The result
 // depends on the arguments only.
 void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
                             const std::vector<Vec3>& to, double t0, double t1,

@@ -1,4 +1,4 @@
-// A contact: a condition on the distance between a node or edge and what it may not enter.
+// A contact: a condition on the distance between a node or edge and the feature that it touches.
 // contact/surfaces.h and contact/colliders.h find contacts; contact/contact_solver.h solves them in
 // explicit steps, solver/constraints.h in implicit steps and rest states.
 // docs/methods/contact.md.
@@ -12,7 +12,8 @@
 
 namespace sinew {
 
-// A condition on one to four nodes. The place that touches, relative to what it touches, is
+// A condition on one to four nodes. The position of the node or edge relative to the feature that
+// it touches is
 //
 //   r(x) = sum_a weight_a x_a - anchor,      gap(x) = normal . r(x) >= 0
 //
@@ -20,25 +21,25 @@ namespace sinew {
 //   edge against an edge:     weights 1-s, s, -(1-t), -t     anchor 0
 //   node against a collider:  weight 1                       anchor on the collider's surface
 //
-// Weights that sum to zero and a common normal keep momentum to rounding.
+// Weights that sum to zero and a common normal conserve momentum to rounding.
 struct Contact {
-  std::array<Index, 4> node = {-1, -1, -1, -1};  // node ids, those used first
+  std::array<Index, 4> node = {-1, -1, -1, -1};  // node ids; the first `count` are used
   std::array<double, 4> weight = {};             // [-]
   int count = 0;                                 // nodes used, 1 to 4
   Vec3 normal =
-      Vec3::UnitY();           // [-] unit, out of what is touched (triangle, second edge, collider)
-  Vec3 anchor = Vec3::Zero();  // [m] of the collider, at the end of the step
-  Vec3 way = Vec3::Zero();     // [m] of the collider's surface there over the step
-  double gap = 0.0;            // [m] at the end of the step: < 0 inside
-  double moment = 1.0;         // [-] in [0, 1]: when within the step the gap became 0; 0 where it
-                               // was 0 or less from the start
-  double friction = 0.0;       // [-] Coulomb's mu
-  double restitution = 0.0;    // [-]
-  ContactId id;                // which contact it is; unique within a step
+      Vec3::UnitY();  // [-] unit, points out of the touched triangle, second edge or collider
+  Vec3 anchor = Vec3::Zero();  // [m] on the collider's surface, at the end of the step
+  Vec3 way = Vec3::Zero();  // [m] displacement of the collider's surface at the anchor in the step
+  double gap = 0.0;         // [m] at the end of the step; < 0: inside
+  double moment = 1.0;  // [-] in [0, 1]: the share of the step after which the gap became 0; 0: it
+                        // was 0 or less from the start
+  double friction = 0.0;     // [-] Coulomb's mu
+  double restitution = 0.0;  // [-]
+  ContactId id;              // unique within a step
 };
 
-// The gaps below which contacts are found [m]. A plane has its own: it is the same condition
-// wherever a node is, so a solver that moves nodes far can hold it from any distance.
+// The gaps below which contacts are found [m]. A plane has its own reach: its condition is the same
+// at all positions of a node, so a solver that moves nodes far can use the contact at any distance.
 struct ContactReach {
   ContactReach(double any) : near(any), plane(any) {}  // NOLINT: the usual case
   ContactReach(double shapes_and_surfaces, double planes)
@@ -47,7 +48,7 @@ struct ContactReach {
   double plane = 0.0;
 };
 
-// The place that touches, relative to what it touches [m]: r(x) above.
+// The position of the node or edge relative to the touched feature [m]: r(x) above.
 inline Vec3 contact_offset(const Contact& c, const std::vector<Vec3>& x) {
   Vec3 r = -c.anchor;
   for (int a = 0; a < c.count; ++a)

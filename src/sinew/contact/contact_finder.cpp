@@ -10,7 +10,7 @@
 namespace sinew {
 namespace {
 
-// Whether contacts can share nodes: not where one plane is all that can be touched.
+// Whether contacts can share nodes. They cannot if a single plane is the only thing to touch.
 bool may_share_nodes(const Model& model) {
   if (!model.surface.triangles.empty()) return true;
   Index planes = 0;
@@ -22,7 +22,7 @@ bool may_share_nodes(const Model& model) {
   return planes > 1;
 }
 
-// Of the size of a mean tet: far more than what a step at rest moves, far less than what is seen.
+// Share of the mean tet size: far above the motion of a step at rest, far below a visible distance.
 constexpr double reach_share = 1e-3;
 
 }  // namespace

@@ -1,4 +1,4 @@
-// Finds all contacts of a step: of bodies with each other, with themselves and with hard obstacles.
+// Finds all contacts of a step: between bodies, of bodies with themselves, with hard obstacles.
 // docs/methods/contact.md.
 #pragma once
 
@@ -17,16 +17,17 @@ class ContactFinder {
   explicit ContactFinder(const Model& model);
   ~ContactFinder();
 
-  // Whether the model has anything that can touch.
+  // Whether anything in the model can touch.
   static bool anything_to_find(const Model& model);
 
-  // The gap below which contacts take part in an explicit step [m]. Contacts that nearly touch take
-  // part because others may close them. 0 where no two contacts can share a node.
+  // The gap below which contacts take part in an explicit step [m]. A contact with a small positive
+  // gap takes part because the impulses of other contacts may close it. 0 if no two contacts can
+  // share a node.
   double explicit_reach() const { return explicit_reach_; }
 
-  // The find functions give the contacts of a step from positions `from` at time t0 to `to` at time
-  // t1 (nodes): places whose gap at `to` is below `reach` [m], and places that met on the way. The
-  // contacts are sorted by id and depend on the model and the arguments only.
+  // The find functions return the contacts of a step from positions `from` at time t0 to `to` at
+  // time t1 (nodes): pairs whose gap at `to` is below `reach` [m], and pairs that touched during
+  // the step. The contacts are sorted by id and depend on the model and the arguments only.
   //
   // Contacts with obstacles that have a shape; `contacts` is cleared.
   void find_shapes(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0, double t1,

@@ -10,18 +10,18 @@ using Impact = ContactScratch::Impact;
 using Arrival = ContactScratch::Arrival;
 
 constexpr int most_sweeps = 50;
-constexpr double small = 5e-4;  // share of the largest impulse below which a change is let be
+constexpr double small = 5e-4;  // share of the largest impulse; smaller changes end the sweeps
 
-// What is inside at the start of a step is led out by this share of its depth in the step, and no
-// faster than this [m/s]: overlaps at the start of a run do not burst.
+// A contact that penetrates at the start of a step moves outwards by this share of its depth, and
+// at most at this speed [m/s]: overlaps at the start of a run do not burst apart.
 constexpr double way_out = 0.2;
 constexpr double speed_out = 0.1;
 
-// Energy that bounces may seem to make, as a share of what they bring with them: the balance of a
-// step in which springs are at work is no better.
+// The energy that bounces may seem to create, as a share of the kinetic energy before them. The
+// energy balance of a step with spring forces is no more accurate than this.
 constexpr double seems_made = 0.05;
 
-// Of the place across the gap [m/s].
+// The relative velocity of a contact [m/s].
 inline Vec3 relative(const Impact& i, const std::vector<Vec3>& v) {
   Vec3 sum = i.weight[0] * v[i.slot[0]];
   if (i.count == 1) return sum;
@@ -36,7 +36,7 @@ inline void push(const Impact& i, const Vec3& change, std::vector<Vec3>& v) {
   for (std::size_t a = 1; a < 4; ++a) v[i.slot[a]] += i.share[a] * change;
 }
 
-// Along the normal [m/s2].
+// The acceleration along the normal [m/s2].
 double acceleration(const Model& model, const Contact& c, const std::vector<Vec3>& force) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) {
@@ -46,7 +46,7 @@ double acceleration(const Model& model, const Contact& c, const std::vector<Vec3
   return c.normal.dot(sum);
 }
 
-// The node's place among those that are touched.
+// The slot of a node; a new node gets the next slot.
 std::uint32_t slot_of(Index node, const State& state, ContactScratch& s) {
   std::uint32_t& slot = s.slot[uz(node)];
   if (slot == 0) {
@@ -57,8 +57,9 @@ std::uint32_t slot_of(Index node, const State& state, ContactScratch& s) {
   return slot;
 }
 
-// Velocities lead positions: the gap at the end of the step is gap + h (v - velocity), and may not
-// be less than 0, or than what is left of the depth at its start. [m/s]
+// The smallest velocity along the normal without a bounce [m/s]. Positions follow velocities: the
+// gap at the end of the step is gap + h (v - velocity). It must be at least 0. If the step starts
+// with a penetration, the part of it that is not recovered in this step may remain.
 double least_without_bounce(const Arrival& arrival, double h) {
   const double start = arrival.contact->gap - h * arrival.velocity;
   const double end =
@@ -66,7 +67,7 @@ double least_without_bounce(const Arrival& arrival, double h) {
   return (end - start) / h;
 }
 
-// Where a contact is to go: the velocity along the normal that it should end with.
+// Sets the velocity along the normal that a contact must end with.
 void aim(const Model& model, const std::vector<Vec3>& force, double h, const Vec3& velocity,
          Impact& impact, Arrival& arrival) {
   const Contact& c = *arrival.contact;
@@ -124,8 +125,9 @@ void find_impacts(const Model& model, const std::vector<Contact>& contacts,
   s.arrivals.resize(n);
 }
 
-// Warm start: begins with what the same pair pushed with in the step before [N], or with what its
-// feature did, where that has gone on to another part of the same owner. Both lists are by id.
+// Warm start: a contact starts from the force of the same pair in the step before [N]. If the
+// feature has moved on to another part of the same owner, it starts from the force of that pair.
+// Both lists are sorted by id.
 void recall(const std::vector<ContactPush>& before, double kick, ContactScratch& s) {
   s.velocity = s.predicted;
   if (before.empty()) return;
@@ -137,7 +139,7 @@ void recall(const std::vector<ContactPush>& before, double kick, ContactScratch&
     const Vec3 total = kick * before[p].push;
     const double along = impact.normal.dot(total);
     impact.impulse = std::max(0.0, along);
-    // The cone is seen to when its turn comes.
+    // exchange() projects the tangential impulse onto the friction cone.
     if (impact.friction > 0.0) impact.grip = total - along * impact.normal;
     push(impact, impact.impulse * impact.normal + impact.grip, s.velocity);
   };
@@ -155,7 +157,7 @@ void recall(const std::vector<ContactPush>& before, double kick, ContactScratch&
   for (std::size_t k = 0; k < s.impacts.size(); ++k) {
     if (s.arrivals[k].known) continue;
     const ContactId& id = s.arrivals[k].contact->id;
-    std::size_t q = s.arrivals[k].recalled;  // those of the same feature are around it
+    std::size_t q = s.arrivals[k].recalled;  // contacts of the same feature are next to it
     while (q > 0 && before[q - 1].id.same_feature(id)) --q;
     for (; q < before.size() && before[q].id.same_feature(id); ++q) {
       if (s.taken[q] != 0) continue;
@@ -165,7 +167,7 @@ void recall(const std::vector<ContactPush>& before, double kick, ContactScratch&
   }
 }
 
-// One contact's turn; returns the square of the change of its impulses [N2 s2].
+// One Gauss-Seidel update of a contact; returns the square of the change of its impulses [N2 s2].
 inline double exchange(Impact& i, std::vector<Vec3>& velocity) {
   const Vec3 v = relative(i, velocity) - i.speed;
   const double along = i.normal.dot(v);
@@ -186,7 +188,7 @@ inline double exchange(Impact& i, std::vector<Vec3>& velocity) {
   return total.squaredNorm();
 }
 
-// Takes turns until the changes are small against the largest impulse. Returns how many.
+// Sweeps until the changes are small relative to the largest impulse. Returns the number of sweeps.
 int exchange_all(ContactScratch& s) {
   double largest2 = 0.0;
   for (int n = 1;; ++n) {
@@ -199,8 +201,8 @@ int exchange_all(ContactScratch& s) {
   }
 }
 
-// The loss of an impact on its own as the flight has it, less what the mean of the velocities makes
-// of it: that does not see at which moment of the step the impact was. [J]
+// The energy loss of a single impact in free flight, minus the loss by the mean of the velocities:
+// the mean does not know the time of the impact within the step. [J]
 double moment_correction(const Impact& i, const Arrival& a, double kick) {
   if (!a.bounces) return 0.0;
   const double alone = i.mass * (a.after.velocity - a.velocity);  // impulse
@@ -209,15 +211,15 @@ double moment_correction(const Impact& i, const Arrival& a, double kick) {
   return std::min(1.0, i.impulse / alone) * (i.mass * a.after.loss + alone * mean);
 }
 
-// Of a node's slot before the step's forces [m/s].
+// The velocity of a slot's node before the forces of the step [m/s].
 Vec3 velocity_before(const Model& model, const std::vector<Vec3>& force, double kick,
                      const ContactScratch& s, std::size_t slot) {
   const auto i = uz(s.node[slot]);
   return s.predicted[slot] - (kick * model.inverse_mass[i]) * force[i];
 }
 
-// What the impulses do, on the mean of the velocities of the half-steps before and after, less what
-// moving colliders bring in. [J]
+// The work of the impulses, with the mean of the velocities of the half-steps before and after,
+// minus the work of moving colliders. [J]
 double work_within(const Model& model, const std::vector<Vec3>& force, double kick,
                    const ContactScratch& s) {
   double work = 0.0;
@@ -231,9 +233,10 @@ double work_within(const Model& model, const std::vector<Vec3>& force, double ki
   return work;
 }
 
-// What the bounces have made, less what they took, where that is more than seems so; otherwise 0.
-// Of what does not bounce, only places that would have parted by themselves, and that bounces of
-// others have pushed together, count: the rest balance forces, which do as much work. [J]
+// The energy that the bounces have created, minus the energy that they took, if it exceeds the
+// tolerance; otherwise 0. Of the contacts that do not bounce, only those count that would have
+// separated by themselves and that the bounces of others have pushed together. The other contacts
+// balance forces, which do as much work. [J]
 double energy_of_bounces(const ContactScratch& s, double kick) {
   double brought = 0.0;
   double made = 0.0;
@@ -253,12 +256,12 @@ double energy_of_bounces(const ContactScratch& s, double kick) {
   return brought > 0.0 && made > seems_made * brought ? made : 0.0;
 }
 
-// Newton's law of restitution holds for one impact. Of several at once that share nodes each is to
-// end with its own share of its own speed, and the impulses that do this together can make energy
-// (Stewart 2000); in a heap of nodes that strike each other in every step it grows without bound.
-// Then the velocities are v0 + s (v1 - v0), v1 with the bounces, v0 without: as much of them as
-// takes back what was made [J]. Both keep momentum and let nothing in, and so does what lies
-// between.
+// Newton's law of restitution holds for one impact. If several simultaneous impacts share nodes,
+// each must end with its own share of its own speed, and the impulses that satisfy all of them can
+// create energy (Stewart 2000). In a heap of nodes that collide in every step the energy grows
+// without bound. In that case the velocities are v0 + s (v1 - v0), v1 with the bounces, v0 without;
+// s removes the created energy [J]. Both v0 and v1 conserve momentum and satisfy the contacts, so
+// the velocities between them do too.
 void bounce_less(const Model& model, const std::vector<Vec3>& force, double kick, double h,
                  double made, ContactScratch& s) {
   const std::vector<Impact> with = s.impacts;
@@ -273,7 +276,7 @@ void bounce_less(const Model& model, const std::vector<Vec3>& force, double kick
     i.grip.setZero();
   }
   exchange_all(s);
-  // a s^2 + b s + c = 0: the work of what lies between is what it was, less what was made.
+  // a s^2 + b s + c = 0: the work at s equals the work with all bounces, minus the created energy.
   const double c = work_within(model, force, kick, s) - (work - made);
   double a = 0.0;
   for (std::size_t k = 1; k < s.node.size(); ++k) {
@@ -292,9 +295,9 @@ void bounce_less(const Model& model, const std::vector<Vec3>& force, double kick
   }
 }
 
-// Velocities and positions of the nodes. Impulses work on the mean of the velocities of the
-// half-steps before and after, as in Verlet's own balance: none where a body lies still, or sticks.
-// Returns what the bodies gain [J].
+// Updates velocities and positions of the nodes. The work of an impulse uses the mean of the
+// velocities of the half-steps before and after, as in Verlet's energy balance: it is 0 for a body
+// at rest and for sticking friction. Returns the energy that the bodies gain [J].
 double move_nodes(const Model& model, const std::vector<Vec3>& force, double kick, double h,
                   ContactScratch& s, State& state) {
   double gained = 0.0;
@@ -340,7 +343,7 @@ ContactReport solve_contacts(const Model& model, const std::vector<Contact>& con
     const Contact& c = *a.contact;
     if (i.impulse == 0.0) continue;
     ++report.contacts;
-    // What bounces left the surface at its moment, not at the start of the step.
+    // A contact that bounces left the surface at its time of impact, not at the start of the step.
     if (a.bounces) {
       bounced = true;
       const double shift = a.after.gap - (c.gap + h * (a.after.velocity - a.velocity));

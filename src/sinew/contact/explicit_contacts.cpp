@@ -6,11 +6,11 @@
 namespace sinew {
 namespace {
 
-// What rests moves by no more than this in a step, as a multiple of the reach of contacts.
+// The largest motion of a resting contact in a step, as a multiple of the reach of contacts.
 constexpr double rests_within = 10.0;
 
-// Whether everything that pushed in the step before is among the contacts, maybe with other
-// partners: as many of the same feature and owner. Both are sorted by id.
+// Whether every contact of the step before is found again: for each feature and owner at least as
+// many contacts, possibly with other partners. Both lists are sorted by id.
 bool all_found(std::span<const ContactPush> pushes, std::span<const Contact> contacts) {
   auto c = contacts.begin();
   for (const ContactPush& p : pushes) {
@@ -21,7 +21,7 @@ bool all_found(std::span<const ContactPush> pushes, std::span<const Contact> con
   return true;
 }
 
-// Whether no place that pushed in the step before moves by more than `most` [m] in this one.
+// Whether no contact of the step before moves by more than `most` [m] in this step.
 bool rests(const State& state, const std::vector<Vec3>& before, double most) {
   return std::all_of(state.reactions.contacts.begin(), state.reactions.contacts.end(),
                      [&](const ContactPush& p) {
@@ -42,12 +42,12 @@ bool ExplicitContacts::any(const Model& model) {
   return ContactFinder::anything_to_find(model);
 }
 
-// Moves the nodes to where the warm start holds them. False: nothing is held, or it does not rest
-// there. let_go() leads them back.
+// Moves the nodes to the positions at which the warm start holds them. Returns false if no node is
+// held or if the nodes do not rest there. let_go() restores the positions.
 bool ExplicitContacts::hold(const std::vector<Vec3>& before, const std::vector<Vec3>& force,
                             double h, State& state) {
   holds_.clear();
-  if (finder_.explicit_reach() == 0.0) return false;  // each contact is on its own
+  if (finder_.explicit_reach() == 0.0) return false;  // no contacts share nodes
   warm_start(state, force, sum_, holds_);
   if (holds_.empty()) return false;
   const double kick = 0.5 * (state.last_step + h);
@@ -60,7 +60,7 @@ bool ExplicitContacts::hold(const std::vector<Vec3>& before, const std::vector<V
   return rests(state, before, rests_within * finder_.explicit_reach());
 }
 
-// Back to the predicted positions.
+// Restores the predicted positions.
 void ExplicitContacts::let_go(State& state) {
   for (std::size_t k = holds_.size(); k-- > 0;) {
     state.position[uz(holds_[k].node)] = predicted_[k];

@@ -22,7 +22,7 @@ class ExplicitContacts {
   static bool any(const Model& model);
 
   // Corrects a step of length h [s] from the positions `before` [m] (nodes). `state` holds the
-  // predicted positions and half-step velocities and, in last_step and time, where the step begins;
+  // predicted positions and half-step velocities, and the start of the step in last_step and time;
   // `force` is the force of the step [N] (nodes).
   //
   // The forces of the step before, state.reactions.contacts, move resting nodes back to their
@@ -30,8 +30,8 @@ class ExplicitContacts {
   // are measured at the predicted positions. If a contact of the step before is missing, the
   // contacts of its kind are found again at the predicted positions.
   //
-  // Adds work and losses to state.energy. Writes the contact forces to state.reactions, where the
-  // next step starts, and the forces of bodies on hard obstacles to state.obstacle_force.
+  // Adds work and losses to state.energy. Writes the contact forces to state.reactions, from which
+  // the next step starts, and the forces of bodies on hard obstacles to state.obstacle_force.
   ContactReport step(const std::vector<Vec3>& before, const std::vector<Vec3>& force, double h,
                      State& state);
 
@@ -50,10 +50,10 @@ class ExplicitContacts {
   ContactFinder finder_;
   ContactScratch scratch_;
   std::vector<Contact> contacts_;  // by id
-  std::vector<Contact> surfaces_;  // those between surfaces, by id
+  std::vector<Contact> surfaces_;  // contacts between surfaces, by id
   std::vector<NodeHold> holds_;    // of the warm start
-  std::vector<Vec3> predicted_;    // where the held nodes were [m] (holds)
-  std::vector<Vec3> sum_;          // of warm_start()
+  std::vector<Vec3> predicted_;    // positions of the held nodes before hold() [m] (holds)
+  std::vector<Vec3> sum_;          // scratch of warm_start()
 };
 
 }  // namespace sinew

@@ -9,8 +9,8 @@
 namespace sinew {
 namespace {
 
-// Lowest and highest of three coordinates, as plain numbers: chains that the processor runs side by
-// side.
+// The smallest and largest value of three coordinates, as plain numbers: the processor evaluates
+// the three chains in parallel.
 struct Extent {
   std::array<double, 3> lo, hi;
   Extent() {
@@ -24,8 +24,8 @@ struct Extent {
   Spread spread() const { return {Vec3(lo.data()), Vec3(hi.data())}; }
 };
 
-// The rotation nearest to `a`, by turning `r` towards it (Mueller, Bender, Chentanez, Macklin
-// 2016). Not to the last digit: any rotation will do, a near one leaves less.
+// The rotation nearest to `a`, found by turning `r` towards it (Mueller, Bender, Chentanez, Macklin
+// 2016). It is approximate: any rotation gives a valid bound, a near one gives a smaller bound.
 Mat3 turned_towards(const Mat3& a, Mat3 r) {
   for (int n = 0; n < 20; ++n) {
     Vec3 torque = Vec3::Zero();
@@ -40,7 +40,7 @@ Mat3 turned_towards(const Mat3& a, Mat3 r) {
     if (!(angle > 1e-4)) break;
     r = Eigen::AngleAxisd(std::min(angle, 1.0), turn / angle) * r;
   }
-  // Turns add up their rounding.
+  // The rounding errors of the turns add up, so the columns are made orthonormal again.
   r.col(0).normalize();
   r.col(1) = (r.col(1) - r.col(0).dot(r.col(1)) * r.col(0)).normalized();
   r.col(2) = r.col(0).cross(r.col(1));
@@ -91,8 +91,8 @@ Box MotionBound::box() const {
   return box;
 }
 
-// A way since the mark is that from the present reference, plus those between references, less that
-// at the mark; each is its shift, give or take its off.
+// The displacement since the mark is the one since the present reference, plus those between
+// references, minus the one at the mark. Each is its shift, with a deviation of at most its off.
 double moved_since(const MotionBound& p, const MotionBound::Mark& p_mark, const MotionBound& q,
                    const MotionBound::Mark& q_mark) {
   const Vec3 way =
@@ -123,7 +123,7 @@ void RigidMotionBound::look(const Moves& moves, const MotionBound& whole, bool s
   box_ = {ends.lo, ends.hi};
   step_ = slow ? whole.step() : step.spread();
 
-  // Of some of the nodes, which is enough for a good rotation.
+  // A subset of the nodes is enough for a good rotation.
   constexpr std::size_t some = 3;
   Vec3 centre = Vec3::Zero(), reference_centre = Vec3::Zero();
   for (std::size_t i = 0; i < nodes_.size(); i += some) {
@@ -159,10 +159,11 @@ RigidMotionBound::Mark RigidMotionBound::mark() const {
   return {whole_way(), drift_ - off_, 0.5 * (box_.lo + box_.hi), 0.5 * (box_.hi - box_.lo).norm()};
 }
 
-// With the rigid motions P and Q from the marks to now, a node of p is at P x_p, one of q at Q x_q,
-// give or take. P keeps distances, so theirs has changed by no more than |Q x_q - P x_q|, which is
-// no more than that at the centre of a ball that holds x_q, plus its radius times the norm of the
-// difference of the rotations: of its three singular values two are the same and one is 0.
+// With the rigid motions P and Q from the marks to now, a node of p is at P x_p and one of q at Q
+// x_q, up to the deviations. P keeps distances, so the distance of the two has changed by at most
+// |Q x_q - P x_q|. That is at most its value at the centre of a ball that holds x_q, plus the
+// radius times the norm of the difference of the rotations. Of the three singular values of that
+// difference two are equal and one is 0.
 double changed_since(const RigidMotionBound& p, const RigidMotionBound::Mark& p_mark,
                      const RigidMotionBound& q, const RigidMotionBound::Mark& q_mark) {
   const double off = (p.drift_ + p.off_ - p_mark.drift) + (q.drift_ + q.off_ - q_mark.drift);

@@ -1,5 +1,5 @@
-// A bound on how far nodes have moved since some moment. It tells how long neighbour lists stay
-// valid, without a look at their pairs.
+// A bound on the motion of nodes since a given time. It decides how long neighbour lists stay
+// valid, without a test of their pairs.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 
 namespace sinew {
 
-// Where displacements lie: all are `shift`, give or take `off`.
+// The range of displacements: all are within `off` of `shift`.
 struct Spread {
   Vec3 lo = Vec3::Zero();
   Vec3 hi = Vec3::Zero();
@@ -17,15 +17,15 @@ struct Spread {
   double off() const { return 0.5 * (hi - lo).norm(); }
 };
 
-// At most so far do nodes move against each other whose ways are in a, in b.
+// The largest relative displacement of two nodes with displacements in a and in b.
 inline double apart(const Spread& a, const Spread& b) {
   return (a.shift() - b.shift()).norm() + a.off() + b.off();
 }
 
-// The nodes of a surface, seen as moving together, give or take: cheap enough for every step.
+// A bound on the common motion of the nodes of a surface; cheap enough for every step.
 class MotionBound {
  public:
-  // Where the nodes were at a moment.
+  // The motion of the nodes up to a given time.
   struct Mark {
     Vec3 way = Vec3::Zero();
     double drift = 0.0;
@@ -34,20 +34,20 @@ class MotionBound {
   MotionBound() = default;
   MotionBound(std::vector<Index> nodes, const std::vector<Vec3>& x);
 
-  // Looks at the nodes at the end of a step, and at their ways in it.
+  // Reads the positions at the end of a step and the displacements in it.
   void look(const Moves& moves);
-  // Makes the end of that step the positions that ways are taken from.
+  // Makes the end of that step the reference of later displacements.
   void renew(const Moves& moves);
 
   const Spread& step() const { return step_; }    // within the step
   const Spread& since() const { return since_; }  // from the positions of renew() to the step's end
-  Mark mark() const { return {travel_ + since_.shift(), drift_ - since_.off()}; }  // of its end
-  // Hold the nodes at the end of the step, and during it.
+  Mark mark() const { return {travel_ + since_.shift(), drift_ - since_.off()}; }  // at its end
+  // The boxes that hold the nodes at the end of the step, and during the step.
   Box end_box() const { return {reference_box_.lo + since_.lo, reference_box_.hi + since_.hi}; }
   Box box() const;
 
-  // At most so far [m] has a node of p moved against one of q from the marks to the end of the
-  // step. p may be q.
+  // The upper bound of the relative motion of a node of p and a node of q from the marks to the end
+  // of the step [m]. p may be q.
   friend double moved_since(const MotionBound& p, const Mark& p_mark, const MotionBound& q,
                             const Mark& q_mark);
 
@@ -55,8 +55,8 @@ class MotionBound {
   std::vector<Index> nodes_;
   std::vector<Vec3> reference_;  // [m] (nodes)
   Box reference_box_;
-  Vec3 travel_ = Vec3::Zero();  // of all references before this one [m]
-  double drift_ = 0.0;          // sum of the `off` that they had [m]
+  Vec3 travel_ = Vec3::Zero();  // sum of the shifts of all earlier references [m]
+  double drift_ = 0.0;          // sum of their `off` [m]
   Spread since_, step_;
 };
 
@@ -72,33 +72,33 @@ struct Rigid {
   Rigid inverse() const { return {r.transpose(), -(r.transpose() * t)}; }
 };
 
-// The nodes of a part of a surface, seen as a rigid body that moves and turns, give or take.
+// A bound on the motion of the nodes of a part as a rigid body, and on their deviation from it.
 class RigidMotionBound {
  public:
-  // Where the part was at a moment.
+  // The motion of the part up to a given time.
   struct Mark {
     Rigid way;
     double drift = 0.0;          // [m]
-    Vec3 centre = Vec3::Zero();  // of a ball that held its nodes [m]
+    Vec3 centre = Vec3::Zero();  // of a ball around its nodes [m]
     double radius = 0.0;         // [m]
   };
 
   RigidMotionBound() = default;
   RigidMotionBound(std::vector<Index> nodes, const std::vector<Vec3>& x);
 
-  // Looks at the nodes at the end of a step. `slow`: their ways in it are taken to be anywhere
-  // among those of the whole surface.
+  // Reads the positions at the end of a step. `slow`: the displacements in the step are not read;
+  // those of the whole surface bound them.
   void look(const Moves& moves, const MotionBound& whole, bool slow);
-  // Makes the end of that step the shape that the part is compared with.
+  // Makes the end of that step the reference shape.
   void renew(const Moves& moves);
 
   Mark mark() const;                            // of the end of the step
-  double off() const { return off_; }           // from a rigid motion since renew() [m]
-  const Spread& step() const { return step_; }  // the nodes' ways within the step
-  const Box& end_box() const { return box_; }   // holds the nodes at its end
+  double off() const { return off_; }           // deviation from a rigid motion since renew() [m]
+  const Spread& step() const { return step_; }  // displacements of the nodes in the step
+  const Box& end_box() const { return box_; }   // holds the nodes at the end of the step
 
-  // By at most so much have distances of nodes of p from places between nodes of q changed from the
-  // marks to the end of the step [m]. p may be q.
+  // The upper bound of the change of the distances between nodes of p and points between nodes of
+  // q, from the marks to the end of the step [m]. p may be q.
   friend double changed_since(const RigidMotionBound& p, const Mark& p_mark,
                               const RigidMotionBound& q, const Mark& q_mark);
 
@@ -109,9 +109,9 @@ class RigidMotionBound {
   std::vector<Vec3> reference_;  // [m] (nodes)
   Vec3 reference_centre_ = Vec3::Zero();
   Rigid way_;           // from the reference to the end of the step
-  double off_ = 0.0;    // at most so far are nodes from there [m]
-  Rigid travel_;        // of all references before this one
-  double drift_ = 0.0;  // sum of the `off` that they had [m]
+  double off_ = 0.0;    // largest distance of a node from that motion [m]
+  Rigid travel_;        // motion of all earlier references
+  double drift_ = 0.0;  // sum of their `off` [m]
   Box box_;
   Spread step_;
 };

@@ -8,15 +8,15 @@
 namespace sinew {
 namespace {
 
-constexpr double opposed = 0.3;       // cosine of node's and triangle's normals, at most
+constexpr double opposed = 0.3;       // largest cosine between the normals of node and triangle
 constexpr double opposed_self = 0.0;  // the same within a body
 
-// 0 where there is no direction.
+// The nearest point of a triangle.
 OnTriangle nearest_on(const Vec3& p, const std::vector<Vec3>& x, const Triangle& t) {
   return nearest_on_triangle(p, x[uz(t[0])], x[uz(t[1])], x[uz(t[2])]);
 }
 
-// How far the pair moves against each other within the step.
+// The largest motion of the triangle's corners relative to the node in the step.
 double relative_motion(Index p, const Triangle& t, const Moves& m) {
   const Vec3 dp = m.to[uz(p)] - m.from[uz(p)];
   double most = 0.0;
@@ -113,7 +113,8 @@ bool NarrowPhase::adjoin(const Edge& a, const Edge& b) const {
   });
 }
 
-// The two sides of a slit: at rest they face each other over a gap, not over material.
+// Whether node and triangle are on two sides of a slit: at rest they face each other across a gap,
+// not through material.
 bool NarrowPhase::slit(Index slot, Index t, double apart) const {
   const Vec3& n = rest_plane_[uz(t)].normal;
   if (!(rest_normal_[uz(slot)].dot(n) < -0.5)) return false;
@@ -130,8 +131,8 @@ double NarrowPhase::calm_motion(Index a, Index b) const {
   return calm_share * std::min(smallest_size_[uz(a)], smallest_size_[uz(b)]);
 }
 
-// Whether a node and a triangle of one body, now near each other, have come together from
-// elsewhere, rather than being neighbours, or opposite sides of the same piece of material.
+// Whether a node and a triangle of one body that are near each other have come together from
+// elsewhere. Neighbours and opposite sides of the same piece of material do not count.
 bool NarrowPhase::self_pair_counts(Index slot, Index t, const OnTriangle& on, double side,
                                    const std::vector<Vec3>& from) const {
   const Index node = surface_.nodes[uz(slot)];
@@ -140,7 +141,8 @@ bool NarrowPhase::self_pair_counts(Index slot, Index t, const OnTriangle& on, do
   const double apart = rest_distance(node, tri);
   if (!(std::sqrt(on.distance2) < self_share * apart)) return side < 0.0 && slit(slot, t, apart);
   if (side >= 0.0) return true;
-  // Behind it at rest, through the material: only if it has come from the front.
+  // At rest the node is behind the triangle, with material in between: it counts only if it comes
+  // from the front.
   const Vec3& n = rest_plane_[uz(t)].normal;
   const double behind = n.dot(rest_[uz(node)] - rest_[uz(tri[0])]);
   if (!(behind < 0.0 && rest_normal_[uz(slot)].dot(n) < 0.0)) return true;
@@ -148,9 +150,10 @@ bool NarrowPhase::self_pair_counts(Index slot, Index t, const OnTriangle& on, do
          -0.2 * self_share * apart;
 }
 
-// Keeps the nearer of two. Where both are at one place, an edge or a corner, that whose plane the
-// node is farther from: on its side the node is of the surface (on a plane's side alone it need not
-// be; Baerentzen and Aanaes 2005 take a mean of the planes for this).
+// Keeps the nearer of two triangles. If the nearest point is common to both (an edge or a corner),
+// it keeps the triangle whose plane is farther from the node: the side of that plane is the node's
+// side of the surface. The side of the other plane may be wrong (Baerentzen and Aanaes 2005 use a
+// mean of the planes for this).
 void NarrowPhase::Near::take(const Near& other) {
   constexpr double same = 1e-7;
   if (triangle >= 0) {
@@ -195,7 +198,7 @@ NarrowPhase::Nearest NarrowPhase::nearest(Index slot, bool self, const NearTrian
   };
   const std::size_t count = triangles.triangle.size();
   for (std::size_t k = 0; k < count; ++k) {
-    // Nothing farther than this is of use.
+    // Triangles beyond this distance cannot change the result.
     const double useful2 =
         result.fit.triangle < 0
             ? range * range
@@ -215,7 +218,7 @@ NarrowPhase::Nearest NarrowPhase::nearest(Index slot, bool self, const NearTrian
     const double side = plane.normal.dot(ap);
     const double side2 = side * side;
     if (side2 > range * range) continue;
-    // The normal of a needle is noise.
+    // The normal of a needle-shaped triangle is noise.
     if (plane.length > 1e-10 * std::max(ab.squaredNorm(), ac.squaredNorm())) {
       const double b_area = ap.cross(ac).dot(plane.normal);
       const double c_area = ab.cross(ap).dot(plane.normal);
@@ -229,7 +232,8 @@ NarrowPhase::Nearest NarrowPhase::nearest(Index slot, bool self, const NearTrian
         take(t, plane, on);
         continue;
       }
-      // At least as far as the plane and the line through an edge that the node lies beyond.
+      // Lower bound: the distance from the plane and from the line of an edge that the node is
+      // beyond.
       const auto beyond = [&](double area, const Vec3& edge) {
         return area < 0.0 &&
                (side2 - useful2) * edge.squaredNorm() + area * area * (1.0 - 1e-9) > 0;
@@ -243,7 +247,7 @@ NarrowPhase::Nearest NarrowPhase::nearest(Index slot, bool self, const NearTrian
   return result;
 }
 
-// The contact at a place that was found at the end of the step.
+// Fills the contact with a triangle that is near at the end of the step.
 bool NarrowPhase::node_contact_of(Index slot, const Near& near, double range, const Moves& moves,
                                   Contact& c) const {
   const Triangle& tri = surface_.triangles[uz(near.triangle)];
@@ -278,7 +282,7 @@ NodeTouch NarrowPhase::node_touches(Index slot, Index owner, const NearTriangles
   c.node[0] = node;
   c.weight[0] = 1.0;
 
-  // On the way.
+  // CCD during the step.
   TimeOfImpact hit;
   Index hit_triangle = -1;
   const auto fast = [&](Index t) {
@@ -309,7 +313,7 @@ NodeTouch NarrowPhase::node_touches(Index slot, Index owner, const NearTriangles
     }
   }
 
-  // At the end.
+  // At the end of the step.
   const bool deep =
       end.any.inside && end.fit.inside && end.fit.distance() <= pair_depth(slot, end.fit.triangle);
   const bool close = !end.any.inside && end.fit.triangle >= 0 && !end.fit.inside &&
@@ -333,7 +337,7 @@ NodeTouch NarrowPhase::node_touches(Index slot, Index owner, const NearTriangles
   if (!node_contact_of(slot, end.fit, range, moves, c)) return other;
   if (hit.met) {
     c.moment = hit.moment;
-  } else {  // the gap as if it changed evenly
+  } else {  // the gap is taken to change linearly
     const double before = contact_gap(c, moves.from);
     const double after = contact_gap(c, moves.to);
     c.moment = before <= 0.0 ? 0.0 : (after < 0.0 ? before / (before - after) : 1.0);

@@ -1,5 +1,5 @@
-// The narrow phase of contact: whether a node touches a surface, or an edge an edge. The rules are
-// in docs/methods/contact.md.
+// The narrow phase of contact: tests a node against a surface, and an edge against an edge. The
+// rules are in docs/methods/contact.md.
 #pragma once
 
 #include <span>
@@ -11,15 +11,15 @@
 
 namespace sinew {
 
-// The positions of all nodes at both ends of a step [m], and how near counts as touching [m].
+// The positions of all nodes at both ends of a step, and the gap below which a pair touches [m].
 struct Moves {
   const std::vector<Vec3>& from;
   const std::vector<Vec3>& to;
   double reach = 0.0;
 };
 
-// The planes of the triangles at some positions: their unit normals (0 where there is no area) and
-// their lengths before, twice the areas.
+// The plane of a triangle at given positions: its unit normal (0 if the triangle has no area) and
+// the length of the cross product of its sides, twice the area.
 struct Plane {
   Vec3 normal = Vec3::Zero();  // [-]
   double length = 0.0;         // [m2]
@@ -35,78 +35,78 @@ inline Plane plane_of(const std::vector<Vec3>& x, const Triangle& t) {
 // The triangles that a node may touch.
 struct NearTriangles {
   std::span<const Index> triangle;
-  // How far they were from the node when the list was made [m], rising; empty: not known.
+  // Lower bounds of their distances from the node when the list was made [m], ascending; empty:
+  // unknown.
   std::span<const float> far;
-  double moved = 0.0;  // at most so far has any of them moved against the node since then [m]
+  double moved = 0.0;  // upper bound of their motion relative to the node since then [m]
 };
 
-// near: not touching, but within node_range at the end of the step.
+// near: no contact, but within node_range at the end of the step.
 enum class NodeTouch { none, near, touches };
 
 class NarrowPhase {
  public:
-  // How deep a node may be inside and still be led out, as a share of the local size (size of the
-  // triangles); how far a pair may move against each other in a step without being followed on the
-  // way; how close to each other, as a share of their distance at rest, two places of one body
-  // have to come.
+  // depth_share: the largest depth of a node inside a surface that is still resolved, as a share of
+  // the local size (size of the triangles). calm_share: the largest relative motion of a pair in a
+  // step that needs no CCD, as a share of the same size. self_share: two places of one body touch
+  // only below this share of their rest distance.
   static constexpr double depth_share = 0.35;
   static constexpr double calm_share = 0.15;
   static constexpr double self_share = 0.25;
-  // Edges that turn by more meet other edges, of other bodies and of their own; those that turn by
-  // less than the last meet none [rad].
+  // Bends of edges [rad]. A sharp edge (bend above `sharp`, within one body above `sharp_to_self`)
+  // can touch all edges with a bend above `concave`. Of two edges that touch, one is sharp.
   static constexpr double sharp = 0.21;
   static constexpr double sharp_to_self = 0.6;
   static constexpr double concave = -0.09;
 
   explicit NarrowPhase(const Model& model);
 
-  // Farther away than this at the end of the step, a node does not touch an owner's surface, but
-  // for triangles that it went through on the way.
+  // If a node is farther than this from an owner's surface at the end of the step, it can only
+  // touch triangles that it passed through during the step.
   double node_range(Index node_slot, Index owner, double reach) const;
   double edge_range(Index edge, Index owner, double reach) const;
   bool is_sharp(Index edge, bool self) const {
     return surface_.edge_bend[uz(edge)] > (self ? sharp_to_self : sharp);
   }
 
-  // The contact of a node with an owner's surface, of which `triangles` holds at least those within
-  // node_range at either end of the step and those that it may meet on the way. The node may belong
-  // to that owner. `planes` (triangles) holds those of these triangles and of those around the
-  // node, at the end of the step. `calm`: no pair of them moves far enough to be followed on the
-  // way.
+  // The contact of a node with an owner's surface. `triangles` holds at least the triangles within
+  // node_range at either end of the step, and those that the node may hit during the step. The node
+  // may belong to that owner. `planes` (triangles) holds the planes of these triangles and of those
+  // around the node, at the end of the step. `calm`: no pair of them moves far enough to need CCD.
   NodeTouch node_touches(Index node_slot, Index owner, const NearTriangles& triangles,
                          std::span<const Plane> planes, bool calm, const Moves& moves,
                          Contact& contact) const;
 
-  // The contact of edge a with edge b, what is touched. False: none.
+  // The contact of edge a with edge b, which is touched. Returns false if there is none.
   bool edges_touch(Index a, Index b, bool calm, const Moves& moves, Contact& contact) const;
 
-  // Neighbours on a surface: the triangle is one of those around the node or around its neighbours;
-  // the edges share a node or have neighbours for nodes. They never touch: always near each other,
-  // they say nothing about a fold.
+  // Neighbours on a surface: the triangle is around the node or around one of its neighbours; the
+  // edges share a node or have nodes that are neighbours. Neighbours never touch: they are always
+  // near each other, so their distance does not indicate a fold.
   bool adjoin(Index node_slot, const Triangle& t) const;
   bool adjoin(const Edge& a, const Edge& b) const;
-  // The nodes of the triangles around a node, rising.
+  // The nodes of the triangles around a node, ascending.
   std::span<const Index> neighbours(Index node_slot) const {
     const auto begin = uz(neighbour_start_[uz(node_slot)]);
     return std::span<const Index>(neighbour_)
         .subspan(begin, uz(neighbour_start_[uz(node_slot) + 1]) - begin);
   }
   Index slot_of(Index node) const { return slot_of_[uz(node)]; }  // -1: not on a surface
-  // Whether an edge meets any other at all; of two that do, one has to be sharp.
+  // Whether an edge can touch any other edge; at least one edge of a pair must be sharp.
   bool may_meet(Index edge) const {
     return surface_.edge_bend[uz(edge)] > concave && surface_.edge_triangles[uz(edge)][1] >= 0;
   }
 
-  // Whether a node and a triangle, or two edges, of one body that are this far apart [m] or more
-  // cannot be near enough to touch.
+  // Whether a node and a triangle, or two edges, of one body cannot touch at this distance [m] or a
+  // larger one.
   bool node_apart(Index node_slot, Index triangle, double distance) const;
   bool edges_apart(Index a, Index b, double distance) const;
 
-  // Relative motion [m] up to which no pair of two owners is followed on the way.
+  // The relative motion [m] up to which pairs of two owners need no CCD.
   double calm_motion(Index a, Index b) const;
 
   const TouchSurface& surface() const { return surface_; }
-  // The distance of a node from a triangle, of two edges, in the rest shape [m].
+  // The distance of a node from a triangle, or of two edges, in the rest shape [m].
   double rest_distance(Index node, const Triangle& t) const;
   double rest_distance(const Edge& a, const Edge& b) const;
 
@@ -114,13 +114,13 @@ class NarrowPhase {
   struct Near {
     Index triangle = -1;
     OnTriangle on;
-    double side = 0.0;          // of the triangle's plane: > 0 in front [m]
+    double side = 0.0;          // signed distance from the triangle's plane: > 0 in front [m]
     Vec3 plane = Vec3::Zero();  // its normal, a unit vector
     bool inside = false;
     double distance() const { return std::sqrt(on.distance2); }
     void take(const Near& other);
   };
-  // The nearest triangle of a set, and of those that may hold the node.
+  // The nearest triangle of a set, and the nearest one that can be in contact with the node.
   struct Nearest {
     Near any;
     Near fit;
@@ -142,15 +142,15 @@ class NarrowPhase {
 
   TouchSurface surface_;
   std::vector<Index> neighbour_start_;     // offsets into neighbour_ (node slots + 1)
-  std::vector<Index> neighbour_;           // nodes around the node, rising
+  std::vector<Index> neighbour_;           // nodes around each node, ascending
   std::vector<Index> slot_of_;             // -1: not on a surface (nodes of the model)
   std::vector<Vec3> rest_;                 // [m] (nodes of the model)
   std::vector<Plane> rest_plane_;          // (triangles)
   std::vector<Vec3> rest_normal_;          // [-] unit (node slots)
   std::vector<Index> triangle_owner_;      // (triangles)
-  std::vector<double> largest_size_;       // of its triangles [m] (owners)
+  std::vector<double> largest_size_;       // of the owner's triangles [m] (owners)
   std::vector<double> smallest_size_;      // [m] (owners)
-  std::vector<std::array<char, 3>> open_;  // 1: no triangle beyond the edge opposite (triangles)
+  std::vector<std::array<char, 3>> open_;  // 1: no triangle across the edge opposite (triangles)
   std::vector<char> rim_;                  // 1: on such an edge (nodes of the model)
   double friction_ = 0.0;
   double restitution_ = 0.0;

@@ -1,4 +1,4 @@
-// Edges against edges: the part of NarrowPhase that is about them.
+// Edges against edges: the edge part of NarrowPhase.
 #include <algorithm>
 #include <cmath>
 
@@ -9,7 +9,7 @@
 namespace sinew {
 namespace {
 
-// How much deeper than its end is away an edge may be before its answer, as a share of the size.
+// An edge may be deeper than its nearest end is away by this share of the size.
 constexpr double end_share = 0.05;
 
 }  // namespace
@@ -34,9 +34,9 @@ bool NarrowPhase::edges_apart(Index a, Index b, double distance) const {
   return distance >= self_share * rest_distance(surface_.edges[uz(a)], surface_.edges[uz(b)]);
 }
 
-// Whether the surface around an edge lies behind the plane through it with normal n, at a moment of
-// the step: n is then one of the normals at which the edge can be touched. `slack`: the sine of the
-// angle by which it may rise above.
+// Whether the surface around an edge is behind the plane through the edge with normal n, at a time
+// of the step: then the edge can be touched with the normal n. `slack`: the sine of the angle by
+// which the surface may rise above the plane.
 bool NarrowPhase::supports(Index edge, const Vec3& n, const Moves& m, double moment,
                            double slack) const {
   const Edge& e = surface_.edges[uz(edge)];
@@ -81,10 +81,11 @@ bool NarrowPhase::edges_touch(Index ea, Index eb, bool calm, const Moves& moves,
     c.gap = contact_gap(c, moves.to);
   };
 
-  // At the end.
+  // At the end of the step.
   if (over) {
     Vec3 n = unit((x[uz(a[1])] - x[uz(a[0])]).cross(x[uz(b[1])] - x[uz(b[0])]));
-    // Deeper than the nearest end of either edge is away, they are not what is touched there.
+    // If the penetration is larger than the distance to the nearest end of either edge, other
+    // features touch there.
     const double to_end = std::min(std::min(on.s, 1.0 - on.s) * (x[uz(a[1])] - x[uz(a[0])]).norm(),
                                    std::min(on.t, 1.0 - on.t) * (x[uz(b[1])] - x[uz(b[0])]).norm());
     for (int turn = 0; turn < 2; ++turn, n = -n) {
@@ -100,7 +101,7 @@ bool NarrowPhase::edges_touch(Index ea, Index eb, bool calm, const Moves& moves,
     }
   }
 
-  // On the way.
+  // CCD during the step.
   if (calm) return false;
   const auto move = [&](Index i) -> Vec3 { return moves.to[uz(i)] - moves.from[uz(i)]; };
   double motion = 0.0;

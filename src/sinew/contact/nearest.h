@@ -10,21 +10,22 @@
 
 namespace sinew {
 
-// v / |v|; 0 where v has no direction.
+// v / |v|; 0 if v is zero.
 inline Vec3 unit(const Vec3& v) {
   const double n = v.norm();
   return n > 0.0 ? Vec3(v / n) : Vec3(Vec3::Zero());
 }
 
-// The parameter in [0, 1] of the point of the segment a b that is nearest to p; 0 where a = b.
+// The parameter in [0, 1] of the point of the segment a b that is nearest to p; 0 if a = b.
 inline double nearest_on_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
   const Vec3 e = b - a;
   const double length2 = e.squaredNorm();
   return length2 > 0.0 ? std::clamp(e.dot(p - a) / length2, 0.0, 1.0) : 0.0;
 }
 
-// The point of a triangle that is nearest to p, as weights of its corners: they sum to 1, and are
-// exactly 0 at the corners that have no part in it (two are 0 at a corner, one on an edge).
+// The point of a triangle that is nearest to p, as weights of the corners. The weights sum to 1;
+// corners that do not contribute have weight exactly 0 (two of them if the point is a corner, one
+// if it is on an edge).
 struct OnTriangle {
   std::array<double, 3> weight = {1.0, 0.0, 0.0};
   Vec3 point = Vec3::Zero();
@@ -43,7 +44,7 @@ inline OnTriangle on_edge(const Vec3& p, const std::array<const Vec3*, 3>& x, st
   return r;
 }
 
-// Also where the triangle has no area: then it is its edges.
+// A triangle without area is treated as its edges.
 inline OnTriangle nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 ab = b - a;
   const Vec3 ac = c - a;
@@ -73,8 +74,8 @@ inline OnTriangle nearest_on_triangle(const Vec3& p, const Vec3& a, const Vec3& 
   return best;
 }
 
-// The points a + s (b - a) and c + t (d - c) at which two lines are nearest to each other. Nothing
-// is clamped; `parallel` where the lines have no such pair of their own.
+// The points a + s (b - a) and c + t (d - c) at which two lines are nearest to each other. s and t
+// are not clamped; `parallel`: the lines have no unique nearest pair.
 struct OnLines {
   double s = 0.0;
   double t = 0.0;
@@ -95,7 +96,7 @@ inline OnLines nearest_on_lines(const Vec3& a, const Vec3& b, const Vec3& c, con
   return on;
 }
 
-// How far two segments are from each other.
+// The distance of two segments.
 inline double segments_distance(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
   const auto away = [](const Vec3& p, const Vec3& e, const Vec3& f) {
     return (p - e - nearest_on_segment(p, e, f) * (f - e)).norm();

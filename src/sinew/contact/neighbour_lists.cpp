@@ -9,16 +9,16 @@
 namespace sinew {
 namespace {
 
-// Farther than its range, as a share of the triangles' size, that a list looks: larger skins last
-// longer and hold more. Of two bodies that lie on each other the lists are full; of a body with
-// itself they are empty unless it is folded.
+// The skin of a list, as a share of the triangles' size. Larger skins last longer and hold more
+// pairs. The lists of two bodies that lie on each other are full; those of a body with itself are
+// empty unless it is folded.
 constexpr double skin_share = 0.4;
 constexpr double self_skin_share = 0.8;
-// Of the skin: lists that have used more of it are made anew; where some have to be, so are those
-// that have used more than the second, for fewer looks.
+// Shares of the skin. Lists that have used more than the first are rebuilt. If any list is rebuilt,
+// those that have used more than the second are rebuilt too, so checks are fewer.
 constexpr double used_up = 0.8;
 constexpr double half_used = 0.4;
-// Of the triangles' size: tracks whose nodes have gone apart by more start anew.
+// Share of the triangles' size: tracks whose nodes deviate by more get a new reference.
 constexpr double stale_track = 0.02;
 
 }  // namespace
@@ -68,7 +68,7 @@ double NeighbourLists::skin_of(const NearPair& pair) const {
          std::min(owners_[uz(pair.a)].size, owners_[uz(pair.b)].size);
 }
 
-// Brings the tracks of the owner's parts to this step.
+// Updates the tracks of the owner's parts to this step.
 void NeighbourLists::look(Owner& owner, const Moves& moves) {
   if (std::exchange(owner.looked, true)) return;
   const bool slow = apart(owner.track.step(), owner.track.step()) <= 0.1 * skin_share * owner.size;
@@ -80,8 +80,8 @@ void NeighbourLists::look(Owner& owner, const Moves& moves) {
   if (owner.track.since().off() > stale_track * owner.size) owner.track.renew(moves);
 }
 
-// Which parts of the pair are within range and skin of each other in this step; how far the others
-// are from being in range goes into `slack`.
+// Finds the parts of the pair that are within range and skin of each other in this step. Reduces
+// `slack` to the smallest distance of the other parts beyond the range.
 void NeighbourLists::find_close(const NearPair& pair, double range, double skin, double& slack) {
   const Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
   const double most = apart(a.track.step(), b.track.step());
@@ -109,7 +109,8 @@ void NeighbourLists::find_close(const NearPair& pair, double range, double skin,
         slack = std::min(slack, away - most - range);
         continue;
       }
-      // Where it comes from, seen from p, give or take.
+      // The swept box of the other part, relative to p; the nodes deviate from it by at most their
+      // off.
       const RigidMotionBound& other = parts_[uz(q)].track;
       const Vec3 way = track.step().shift() - other.step().shift();
       Box swept = other.end_box();
@@ -127,9 +128,9 @@ void NeighbourLists::find_close(const NearPair& pair, double range, double skin,
   }
 }
 
-// How much of its skin [m] a part's lists have used, or parts outside them that come closer leave
-// of it; infinite where they do not hold what they have to. Sets `before`. `most`: at most so far
-// do the owners move in the step.
+// The part of its skin [m] that a part's lists have used, or that parts outside the lists have
+// used by coming closer; infinite if the lists may miss pairs. Sets `before`. `most`: upper bound
+// of the relative motion of the owners in the step.
 double NeighbourLists::used_of(NearPart& near, double range, double skin, double most,
                                double reach) const {
   constexpr double all = std::numeric_limits<double>::infinity();
@@ -152,7 +153,8 @@ double NeighbourLists::used_of(NearPart& near, double range, double skin, double
   return std::max(used, near.before);
 }
 
-// New lists; returns how much of their skin the step uses, infinite where they are for it alone.
+// Builds new lists. Returns how much of their skin the step uses, or infinity if a list is valid
+// for this step only.
 double NeighbourLists::build(const std::vector<NearPart*>& stale, double skin, const Moves& moves) {
   const auto prepare = [&](Index p) {
     SurfacePart& part = parts_[uz(p)];
@@ -177,7 +179,7 @@ double NeighbourLists::build(const std::vector<NearPart*>& stale, double skin, c
                          apart(track.step(), other.step()) + 1e-6 * skin;
       near.before = std::max(near.before, way);
     }
-    // In a step that is longer than the skin the lists are of this step alone.
+    // If the motion in the step is longer than the skin, the lists are valid for this step only.
     near.known = near.before <= used_up * skin;
     near.reach = moves.reach;
     finder_->make(near, near.known ? skin : 0.0, !near.known, moves);
@@ -190,7 +192,7 @@ double NeighbourLists::build(const std::vector<NearPart*>& stale, double skin, c
   return used;
 }
 
-// Looks at every part of the pair, and makes new lists where the old ones do not do any more.
+// Checks every part of the pair and rebuilds the lists that are not valid any more.
 void NeighbourLists::check(NearPair& pair, const Moves& moves) {
   Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
   look(a, moves);
@@ -244,7 +246,7 @@ void NeighbourLists::check(NearPair& pair, const Moves& moves) {
   pair.b_mark = b.track.mark();
 }
 
-// The parts that have lists at all, and their triangles.
+// Collects the parts that have a non-empty list, and their triangles.
 void NeighbourLists::collect(NearPair& pair) {
   const TouchSurface& s = narrow_phase_.surface();
   marked_.resize(s.triangles.size(), 0);
@@ -279,7 +281,7 @@ const std::vector<const NearPair*>& NeighbourLists::update(const Moves& moves) {
       pair.checked = false;
       continue;
     }
-    // At either end of the step.
+    // The bound covers both ends of the step.
     double since = moved_since(a, pair.a_mark, b, pair.b_mark) + apart(a.step(), b.step());
     if (!pair.checked || moves.reach > pair.reach || !(since <= pair.slack)) {
       check(pair, moves);

@@ -11,21 +11,21 @@
 
 namespace sinew {
 
-// What of two owners is near each other; a = b: within one.
+// The features of two owners that are near each other; a = b: within one owner.
 struct NearPair {
   Index a = 0;
   Index b = 0;
-  // Those that have anything near: parts of a first, then, where a is not b, parts of b.
+  // The parts with a non-empty list: parts of a first, then, if a is not b, parts of b.
   std::vector<const NearPart*> parts;
-  std::vector<Index> triangles;  // of their lists, and those around their nodes; rising
-  bool calm = false;  // in this step nothing of them moves far enough to be followed on its way
+  std::vector<Index> triangles;  // of their lists, and those around their nodes; ascending
+  bool calm = false;             // no pair moves far enough in this step to need CCD
 
   std::vector<NearPart> all;  // parts of a, then of b
-  // They need no new look before the owners have moved by `slack` against each other since the
+  // The lists need no check until the owners have moved by `slack` relative to each other since the
   // marks.
   bool checked = false;
   double slack = 0.0;  // [m]
-  double reach = 0.0;  // then [m]
+  double reach = 0.0;  // the reach at the last check [m]
   MotionBound::Mark a_mark, b_mark;
 };
 
@@ -34,11 +34,11 @@ class NeighbourLists {
   NeighbourLists(const Model& model, const NarrowPhase& touching);
   ~NeighbourLists();
 
-  // The pairs of owners that may touch in this step, with lists that hold every node with every
-  // triangle, and every edge with every edge, that come within the range of NarrowPhase in it.
+  // The pairs of owners that may touch in this step. Their lists hold every node and triangle, and
+  // every two edges, that come within the range of NarrowPhase during the step.
   const std::vector<const NearPair*>& update(const Moves& moves);
 
-  // How many parts got new lists so far, for tests and measurements.
+  // The number of lists built so far, one per part, for tests and measurements.
   std::int64_t built() const { return built_; }
   Index part_count() const { return static_cast<Index>(parts_.size()); }
 
@@ -46,11 +46,11 @@ class NeighbourLists {
   struct Owner {
     Range parts;
     MotionBound track;
-    double size = 0.0;    // mean of its triangles [m]
-    double range = 0.0;   // the largest range of its nodes and edges, but for reach [m]
-    bool looked = false;  // its parts' tracks are of this step
+    double size = 0.0;    // mean size of its triangles [m]
+    double range = 0.0;   // the largest range of its nodes and edges without the reach [m]
+    bool looked = false;  // the tracks of its parts are those of this step
   };
-  // A part of b close to a part of a, and how far away the step brings them at least [m].
+  // A part of b close to a part of a, and the lower bound of their distance during the step [m].
   struct Close {
     Index part;
     double gap;
@@ -67,12 +67,12 @@ class NeighbourLists {
   const NarrowPhase& narrow_phase_;
   std::vector<SurfacePart> parts_;  // owner by owner
   std::vector<Owner> owners_;
-  std::vector<NearPair> pairs_;  // all that may touch at all, by a, then b
+  std::vector<NearPair> pairs_;  // all that may touch, by a, then b
   std::vector<const NearPair*> near_;
   std::unique_ptr<NearFinder> finder_;
-  std::vector<std::vector<Close>> close_;  // scratch (parts): of the pair at hand, rising
-  Boxes part_boxes_;                       // scratch: of parts of b
-  std::vector<float> gaps_;                // scratch: to them [m]
+  std::vector<std::vector<Close>> close_;  // scratch (parts): of the current pair, ascending
+  Boxes part_boxes_;                       // scratch: boxes of the parts of b
+  std::vector<float> gaps_;                // scratch: gaps to part_boxes_ [m]
   std::vector<char> marked_;               // scratch (triangles)
   std::int64_t built_ = 0;
 };

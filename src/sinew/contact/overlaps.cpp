@@ -10,7 +10,8 @@
 namespace sinew {
 namespace {
 
-// Positive or negative: a tet that is inside out still holds what is between its corners.
+// The sign of the volume does not matter: an inverted tet still contains the points between its
+// corners.
 bool inside(const Vec3& p, const std::vector<Vec3>& x, const Tet& t) {
   const Vec3 &a = x[uz(t[0])], &b = x[uz(t[1])], &c = x[uz(t[2])], &d = x[uz(t[3])];
   const double all = signed_volume(a, b, c, d);

@@ -1,5 +1,5 @@
-// Hard planes as half-spaces: what limits, inversion recovery and rest states need to know of them.
-// As contacts planes are obstacles like any other (contact/colliders.h). docs/methods/ground.md.
+// Hard planes as half-spaces, for limits, inversion recovery and rest states. In contact, planes
+// are obstacles like any other (contact/colliders.h). docs/methods/ground.md.
 #pragma once
 
 #include <variant>
@@ -11,12 +11,12 @@ namespace sinew {
 
 struct HalfSpace {
   Vec3 point = Vec3::Zero();    // [m] on the plane
-  Vec3 normal = Vec3::UnitY();  // [-] unit, to the free side
+  Vec3 normal = Vec3::UnitY();  // [-] unit, towards the free side
 
   double height(const Vec3& x) const { return normal.dot(x - point); }  // [m]
 };
 
-// Calls f(half_space) for every hard plane, the ground among them, as it is at the time [s].
+// Calls f(half_space) for every hard plane, including the ground, with its pose at the time [s].
 template <typename F>
 void for_each_hard_plane(const Model& model, double time, const F& f) {
   for (const Obstacle& o : model.obstacles) {
@@ -27,7 +27,8 @@ void for_each_hard_plane(const Model& model, double time, const F& f) {
 }
 
 // Lifts free nodes of bodies at x [m] (nodes) that are below a hard plane onto it. Limits call this
-// between their sweeps, so that limits and planes both hold at the end. Returns how many it lifted.
+// between their sweeps, so that limits and planes both hold at the end. Returns the number of nodes
+// that it lifted.
 Index lift_onto_planes(const Model& model, double time, std::vector<Vec3>& x);
 
 }  // namespace sinew

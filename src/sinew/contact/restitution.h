@@ -1,5 +1,5 @@
-// The bounce of a contact within an explicit step: its flight along the normal, as a pure function
-// on plain values. docs/methods/ground.md.
+// The bounce of a contact in an explicit step: its flight along the normal, as a pure function on
+// plain values. docs/methods/ground.md.
 #pragma once
 
 #include <algorithm>
@@ -7,10 +7,10 @@
 
 namespace sinew {
 
-// Along the normal after an impact.
+// The motion along the normal after an impact.
 struct Rebound {
   double gap = 0.0;       // at the end of the step [m]
-  double velocity = 0.0;  // half-step velocity to go on with [m/s]
+  double velocity = 0.0;  // half-step velocity after the step [m/s]
   double left = 0.0;      // time of the step after the impact [s]
   double loss = 0.0;      // kinetic energy lost per mass [J/kg]
 };
@@ -32,7 +32,7 @@ inline Rebound rebound(double gap, double velocity, double a, double h, double r
   r.gap = away * r.left + 0.5 * a * r.left * r.left;
   r.velocity = away + a * (r.left - 0.5 * h);
   r.loss = 0.5 * (impact * impact - away * away);
-  if (r.gap <= 1e-12 * std::abs(a) * h * h) {  // give or take rounding
+  if (r.gap <= 1e-12 * std::abs(a) * h * h) {  // up to rounding
     r.gap = 0.0;
     r.velocity = 0.0;
     r.loss = start_gap > 0.0 ? 0.5 * impact * impact : 0.0;

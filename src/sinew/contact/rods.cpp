@@ -9,7 +9,7 @@
 namespace sinew {
 namespace {
 
-// Triangle and rod at a share of the step.
+// Triangle and rod at a share s of the step.
 struct Sweep {
   Corners x0, x1;
   const MovingRod& rod;
@@ -23,7 +23,7 @@ struct Sweep {
     return nearest_of_segment_and_triangle(rod.a0 + s * (rod.a1 - rod.a0),
                                            rod.b0 + s * (rod.b1 - rod.b0), corners(s));
   }
-  // The most that the distance can shrink over the step.
+  // An upper bound of the decrease of the distance in the step.
   double way() const {
     const Vec3 mean = 0.5 * (rod.a1 - rod.a0 + rod.b1 - rod.b0);
     double of_triangle = 0.0;
@@ -31,8 +31,8 @@ struct Sweep {
       of_triangle = std::max(of_triangle, (x1[i] - x0[i] - mean).norm());
     return of_triangle + (rod.a1 - rod.a0 - mean).norm();
   }
-  // The share of the step at which the distance is first down to the radius: conservative
-  // advancement, which never goes past it (Mirtich 1996).
+  // The share of the step after which the distance first equals the radius, by conservative
+  // advancement (Mirtich 1996): it never steps past the hit.
   std::optional<double> meets(double way) const {
     double s = 0.0;
     for (int i = 0; i < 200; ++i) {
@@ -45,8 +45,8 @@ struct Sweep {
   }
 };
 
-// The rod's side of a pair: unit from the rod to the triangle; into the body where the rod is in
-// the surface itself.
+// The normal of a pair: a unit vector from the rod to the triangle. If the rod's axis is in the
+// surface itself, it points into the body.
 Vec3 pair_normal(const NearestPair& p, const Vec3& outward) {
   return p.distance > 0.0 ? Vec3((p.on_triangle - p.on_segment) / p.distance) : Vec3(-outward);
 }
@@ -60,8 +60,8 @@ Vec3 outward_of(const Corners& c) {
 struct Hit {
   NearestPair pair;
   Vec3 normal = Vec3::UnitY();
-  double facing = 0.0;   // how much the triangle's outside looks at the rod, in [-1, 1]
-  bool crossed = false;  // met on the way: the pair is the one of that moment
+  double facing = 0.0;   // -normal . outward normal of the triangle, in [-1, 1]
+  bool crossed = false;  // hit during the step: the pair is the one at the time of impact
 };
 
 std::optional<Hit> hit_of(const Sweep& sweep, double reach) {
@@ -106,7 +106,7 @@ Contact contact_of(const Hit& hit, const MovingRod& rod, const Triangle& t,
   return c;
 }
 
-// An edge's hit as one of its triangles sees it.
+// The hit of an edge, as found for one of its triangles.
 struct EdgeHit {
   Index edge = -1;
   Index triangle = -1;
@@ -158,8 +158,9 @@ void add_rod_contacts(const MovingRod& rod, const Skin& skin, const std::vector<
       edges.push_back({c.id.feature, index, c, hit->facing, hit->crossed});
     }
   }
-  // An edge counts once, if what its triangles see of the rod is outside. It need not be nearest in
-  // both: in a step that goes deep the two may differ, and the place would be let through.
+  // An edge counts once, if the rod is on the outside of its triangles (sum of `facing` > 0). The
+  // edge need not be nearest for both triangles: in a step with deep penetration the two may
+  // differ, and the contact would be missed.
   std::sort(edges.begin(), edges.end(), [](const EdgeHit& a, const EdgeHit& b) {
     return std::pair(a.edge, a.triangle) < std::pair(b.edge, b.triangle);
   });

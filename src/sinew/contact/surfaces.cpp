@@ -23,17 +23,17 @@ struct SurfaceContacts::Search {
 
   NarrowPhase touching;
   NeighbourLists lists;
-  std::vector<Plane> planes;  // at the end of the step (triangles); those of the pair at hand
-  std::vector<Index> held;    // the pair in which the node is at the other owner (node slots)
+  std::vector<Plane> planes;  // at the end of the step (triangles); valid for the current pair
+  std::vector<Index> held;  // the last pair in which the node is near the other owner (node slots)
 };
 
 namespace {
 
-// Appends what `add(part, contacts)` finds, in the order of the parts.
+// Appends the contacts that `add(part, contacts)` finds, in the order of the parts.
 template <typename Add>
 void add_in_order(const std::vector<const NearPart*>& parts, std::vector<Contact>& out,
                   const Add& add) {
-  constexpr Index chunk = 32;  // parts that are worth a task
+  constexpr Index chunk = 32;  // parts per task
   const Index count = static_cast<Index>(parts.size());
   if (count <= chunk) {
     for (const NearPart* near : parts) add(*near, out);
@@ -48,7 +48,7 @@ void add_in_order(const std::vector<const NearPart*>& parts, std::vector<Contact
   for (const auto& some : found) out.insert(out.end(), some.begin(), some.end());
 }
 
-// How far away the first of a key's items is at least, [m].
+// A lower bound of the distance of a key's nearest item [m].
 double least_distance(const NearPart& near, const NeighbourList& list, Index k) {
   return static_cast<double>(list.far_of(k)[0]) - near.moved;
 }
@@ -70,7 +70,7 @@ void SurfaceContacts::Search::add_nodes(const NearPart& near, bool calm, Index p
   }
 }
 
-// Whether both ends of an edge are at the other owner already: a flat edge there adds nothing.
+// Whether both end nodes of an edge are near the other owner: then a flat edge adds no contact.
 bool SurfaceContacts::Search::carried(Index edge, Index pair_number) const {
   const Edge& e = touching.surface().edges[uz(edge)];
   return held[uz(touching.slot_of(e[0]))] == pair_number &&

@@ -1,4 +1,4 @@
-// Finds contacts between surfaces: of bodies and rigid meshes with each other, and of bodies with
+// Finds contacts between surfaces: bodies and rigid meshes with each other, and bodies with
 // themselves. docs/methods/contact.md.
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace sinew {
 
-// Scratch of a run: all of it can be computed again. The result of find() depends on its arguments
-// and the Model only.
+// Scratch of a run: all of it can be recomputed. The result of find() depends on its arguments and
+// the Model only.
 class SurfaceContacts {
  public:
   explicit SurfaceContacts(const Model& model);
@@ -21,14 +21,14 @@ class SurfaceContacts {
   SurfaceContacts(SurfaceContacts&&) noexcept;
   SurfaceContacts& operator=(SurfaceContacts&&) noexcept;
 
-  // The contacts of a step in which the nodes move from `from` to `to` [m] (nodes): pairs that are
-  // nearer than `reach` [m] >= 0 at its end, or inside (0: touching or inside), and those that met
-  // on the way. Sorted by id. Pairs that deep inside each other at both ends that no side can be
-  // told are left alone: find_overlaps() knows them.
+  // The contacts of a step in which the nodes move from `from` to `to` [m] (nodes): pairs whose gap
+  // at the end is below `reach` [m] >= 0, or inside (reach 0: touching or inside), and pairs that
+  // hit each other during the step. Sorted by id. Pairs that are too deep inside each other at both
+  // ends to tell the side are ignored: find_overlaps() reports them.
   void find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
             std::vector<Contact>& out);
 
-  // How often the lists of what is near were made anew: for tests and measurements.
+  // The number of neighbour lists built so far, for tests and measurements.
   std::int64_t lists_made() const;
 
  private:

@@ -1,5 +1,5 @@
-// The time of impact of features that move on straight lines within a step: the roots of the cubic
-// of coplanarity (Provot 1997; Bridson, Fedkiw, Anderson 2002).
+// The time of impact of features that move along straight lines in a step: the roots of the
+// coplanarity cubic (Provot 1997; Bridson, Fedkiw, Anderson 2002).
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ struct Cubic {
   double at(double t) const { return c[0] + t * (c[1] + t * (c[2] + t * c[3])); }
 };
 
-// det(u0 + t du, v0 + t dv, w0 + t dw), the coplanarity of three edges that move.
+// det(u0 + t du, v0 + t dv, w0 + t dw): the coplanarity of three moving edges.
 inline Cubic moving_determinant(const Vec3& u, const Vec3& du, const Vec3& v, const Vec3& dv,
                                 const Vec3& w, const Vec3& dw) {
   const Vec3 n0 = v.cross(w);
@@ -26,15 +26,15 @@ inline Cubic moving_determinant(const Vec3& u, const Vec3& du, const Vec3& v, co
   return {{u.dot(n0), u.dot(n1) + du.dot(n0), u.dot(n2) + du.dot(n1), du.dot(n2)}};
 }
 
-// The roots in [0, 1] at which the cubic changes its sign (or begins at 0), rising. Found by
-// bisection in the pieces on which it only rises or only falls, to the last bits.
+// The roots in [0, 1] at which the cubic changes its sign (or starts at 0), ascending. Each
+// monotonic piece is searched by Newton's method with bisection, to the last bits.
 struct Roots {
   std::array<double, 4> t = {};
   int count = 0;
 };
 
 inline Roots crossings(const Cubic& f) {
-  // Where it turns: c1 + 2 c2 t + 3 c3 t^2 = 0.
+  // The extrema: c1 + 2 c2 t + 3 c3 t^2 = 0.
   std::array<double, 4> cut = {0.0, 1.0, 1.0, 1.0};
   int pieces = 1;
   const double a = 3.0 * f.c[3], b = f.c[2], c = f.c[1];  // a t^2 + 2 b t + c
@@ -54,7 +54,7 @@ inline Roots crossings(const Cubic& f) {
     const double flo = f.at(lo), fhi = f.at(hi);
     if (!((flo >= 0.0 && fhi < 0.0) || (flo <= 0.0 && fhi > 0.0))) continue;
     const bool falls = fhi < 0.0;
-    double t = lo + (hi - lo) * (flo / (flo - fhi));  // by the chord first
+    double t = lo + (hi - lo) * (flo / (flo - fhi));  // secant as the first guess
     for (int n = 0; n < 100 && lo < t && t < hi; ++n) {
       const double ft = f.at(t);
       if ((ft < 0.0) == falls && ft != 0.0) {
@@ -62,7 +62,7 @@ inline Roots crossings(const Cubic& f) {
       } else {
         lo = t;
       }
-      // Newton's step where it stays inside, half the interval where not.
+      // Newton's step if it stays inside, else half the interval.
       const double slope = f.c[1] + t * (2.0 * f.c[2] + 3.0 * f.c[3] * t);
       const double next = slope != 0.0 ? t - ft / slope : lo;
       if (std::abs(next - t) <= 1e-15) break;
@@ -79,19 +79,19 @@ struct NodeAndTriangle {
   Vec3 p1, a1, b1, c1;
 };
 
-// Of four nodes, p0 ... c0 in this order.
+// The motion of four nodes, p0 ... c0 in this order.
 inline NodeAndTriangle motion_of(Index p, Index a, Index b, Index c, const std::vector<Vec3>& from,
                                  const std::vector<Vec3>& to) {
   return {from[uz(p)], from[uz(a)], from[uz(b)], from[uz(c)],
           to[uz(p)],   to[uz(a)],   to[uz(b)],   to[uz(c)]};
 }
 
-// The first moment at which p goes through the triangle from its front to its back.
+// The first time at which p passes through the triangle from its front to its back.
 struct TimeOfImpact {
   bool met = false;
   double moment = 0.0;                // [-] in [0, 1]
-  std::array<double, 3> weight = {};  // of the triangle's corners, or of s (0) and t (1)
-  Vec3 normal = Vec3::Zero();         // [-] unit, at that moment
+  std::array<double, 3> weight = {};  // of the triangle's corners, or s (0) and t (1) of edges
+  Vec3 normal = Vec3::Zero();         // [-] unit, at that time
 };
 
 inline Vec3 between(const Vec3& from, const Vec3& to, double t) {
@@ -107,7 +107,7 @@ inline TimeOfImpact impact_of_node(const NodeAndTriangle& m) {
   const Roots roots = crossings(f);
   for (int i = 0; i < roots.count; ++i) {
     const double t = roots.t[static_cast<std::size_t>(i)];
-    // From front to back: the determinant falls.
+    // The determinant decreases if p passes from front to back.
     const double slope = f.c[1] + t * (2.0 * f.c[2] + 3.0 * f.c[3] * t);
     if (slope > 0.0) continue;
     const Vec3 vt = v + t * dv, wt = w + t * dw, ut = u + t * du;
@@ -127,8 +127,8 @@ inline TimeOfImpact impact_of_node(const NodeAndTriangle& m) {
   return meeting;
 }
 
-// The first moment at which edge a b goes through edge c d; the normal points to where a b came
-// from, weight[0] is s on a b, weight[1] t on c d.
+// The first time at which edge a b passes through edge c d. The normal points to the side that a b
+// came from; weight[0] is s on a b, weight[1] is t on c d.
 inline TimeOfImpact impact_of_edges(const NodeAndTriangle& m) {
   const Vec3 &a0 = m.p0, &b0 = m.a0, &c0 = m.b0, &d0 = m.c0;
   const Vec3 &a1 = m.p1, &b1 = m.a1, &c1 = m.b1, &d1 = m.c1;
@@ -153,7 +153,8 @@ inline TimeOfImpact impact_of_edges(const NodeAndTriangle& m) {
     meeting.met = true;
     meeting.moment = t;
     meeting.weight = {on_u, on_v, 0.0};
-    meeting.normal = slope > 0.0 ? Vec3(-n) : n;  // det = r . (u x v) falls to zero: r on n's side
+    // det = r . (u x v). If it falls to zero, r is on the side of n.
+    meeting.normal = slope > 0.0 ? Vec3(-n) : n;
     return meeting;
   }
   return meeting;

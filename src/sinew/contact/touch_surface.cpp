@@ -30,7 +30,7 @@ double bend(const Vec3& a, const Vec3& b, const Vec3& o, const Vec3& p) {
   return n0.dot(p - a) <= 0.0 ? angle : -angle;  // p behind the first triangle: convex
 }
 
-// Edges of triangles [begin, end), with the triangles on both sides.
+// A side of a triangle: add_edges() pairs the sides that belong to one edge.
 struct Side {
   Edge edge;
   Index triangle;
@@ -72,7 +72,7 @@ void add_edges(const std::vector<Vec3>& x, Range triangles, TouchSurface& s) {
   s.owner_edges.push_back({first, static_cast<Index>(s.edges.size())});
 }
 
-// The triangles' nodes as a rising list without repeats.
+// The nodes of the triangles, ascending, without duplicates.
 std::vector<Index> nodes_of(std::span<const Triangle> triangles) {
   std::vector<Index> nodes;
   for (const Triangle& t : triangles) nodes.insert(nodes.end(), t.begin(), t.end());
@@ -81,7 +81,7 @@ std::vector<Index> nodes_of(std::span<const Triangle> triangles) {
   return nodes;
 }
 
-// Appends an owner; heights: of the tets behind the triangles, empty where there are none.
+// Appends an owner. heights: of the tets behind the triangles; empty for a rigid mesh.
 void add_owner(const std::vector<Vec3>& x, std::span<const Triangle> triangles,
                std::span<const double> heights, TouchSurface& s) {
   const Range range = {static_cast<Index>(s.triangles.size()),

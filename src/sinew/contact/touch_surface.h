@@ -8,12 +8,13 @@
 namespace sinew {
 
 // Fills Model::surface with the surfaces of all bodies, from Model::tets and ::bodies, and of all
-// obstacles that are meshes; leaves it empty where there is neither Model::touch nor such an
-// obstacle. Rest lengths come from Model::rest_position.
+// obstacles that are meshes. It stays empty if there is neither Model::touch nor such an obstacle.
+// Rest lengths come from Model::rest_position.
 void build_touch_surface(Model& model);
 
-// Appends a rigid mesh as the next owner, after build_touch_surface(): triangles of node ids that
-// are higher than those of every owner before it, counter-clockwise from outside.
+// Appends a rigid mesh as the next owner, after build_touch_surface(). The node ids of the
+// triangles are higher than those of every owner before; corners are counter-clockwise seen from
+// outside.
 void add_rigid_touch_surface(Model& model, std::span<const Triangle> triangles);
 
 }  // namespace sinew

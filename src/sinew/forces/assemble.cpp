@@ -17,7 +17,8 @@
 namespace sinew {
 namespace {
 
-// What one tet of `material` adds to the stiffness of its edge. `sharing` tets hold the edge.
+// The contribution of one tet of `material` to the stiffness of its edge. `sharing` tets hold the
+// edge.
 double tet_stiffness(const Material& material, double volume, double length, double sharing) {
   switch (material.law) {
     case Law::uniform:
@@ -35,14 +36,15 @@ double tet_stiffness(const Material& material, double volume, double length, dou
   throw Error(ErrorKind::internal, "unknown law");
 }
 
-// The stiffness that sets the dashpot. The network law's springs have none of their own along the
-// edge: vangelder's stand in, so that a damping ratio means much the same under every law.
+// The stiffness that sets the dashpot. The springs of the network law have no stiffness of their
+// own along the edge. vangelder's stiffness is used instead, so that a damping ratio has nearly the
+// same effect under every law.
 double damped_stiffness(const Material& material, double volume, double length, double sharing) {
   if (material.law == Law::neo_hookean) return vangelder_stiffness(volume, length, material.young);
   return tet_stiffness(material, volume, length, sharing);
 }
 
-// The dashpot that `material` gives to a spring of this total stiffness.
+// The dashpot of `material` for a spring of this total stiffness.
 double law_damping(const Material& material, double stiffness, double mass_i, double mass_j,
                    double length) {
   if (material.law == Law::uniform) return material.spring_damping;
@@ -244,7 +246,7 @@ void mark_pinned(Model& model) {
   }
 }
 
-// Bodies whose springs have neither stiffness nor dashpot (the network law, undamped) cost nothing.
+// Springs of a body with neither stiffness nor dashpot (network law without damping) are skipped.
 void find_active_springs(Model& model) {
   std::vector<Range> ranges;
   for (const Body& body : model.bodies) ranges.push_back(body.springs);
@@ -309,7 +311,7 @@ void colour_limited_springs(Model& model) {
 
 void finish(Model& model) {
   mark_pinned(model);
-  if (!model.network_start.empty()) {  // rows for bodies and anchors that came after
+  if (!model.network_start.empty()) {  // rows of bodies and anchors added later
     model.network_start.resize(model.rest_position.size() + 1, model.network_start.back());
   }
   finish_volume_terms(model);

@@ -1,6 +1,7 @@
-// Eight floats, and triples of them, for the loops of packed_kernels.cpp: one vector, or two where
-// the instruction set has only four lanes. No fused multiply-adds and one order of every sum, so
-// that every instruction set gives the same bits. Read once for each of them.
+// Eight floats, and triples of them, for the loops of packed_kernels.cpp: one vector, or two if the
+// instruction set has only four lanes. There are no fused multiply-adds and every sum has one
+// order, so every instruction set gives the same bits. The file is included once per instruction
+// set.
 #if defined(SINEW_EIGHT_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef SINEW_EIGHT_INL_H_
 #undef SINEW_EIGHT_INL_H_
@@ -30,7 +31,7 @@ struct Eight {
   V part[parts];
 };
 
-// f of the parts of the arguments, part by part.
+// Applies f to the parts of the arguments.
 template <class F, class... E>
 HWY_INLINE Eight each(const F& f, const E&... e) {
   Eight out;
@@ -67,7 +68,7 @@ HWY_INLINE Eight set(float value) {
 HWY_INLINE Eight zero() {
   return set(0.0f);
 }
-// 1 / b where a > least, else 0.
+// 1 / b if a > least, else 0.
 HWY_INLINE Eight inverse_where_above(float least, const Eight& a, const Eight& b) {
   return each(
       [least](V x, V y) HWY_ATTR {
@@ -113,7 +114,8 @@ HWY_INLINE Eight3 cross(const Eight3& a, const Eight3& b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// The four floats at base + index[k], and at base + index[k + 4] above them where lanes are eight.
+// The four floats at base + index[k]; with eight lanes also those at base + index[k + 4], above
+// them.
 template <class D>
 HWY_INLINE hn::Vec<D> row(D d, const float* base, const std::uint16_t* index, std::size_t k) {
   if constexpr (hn::MaxLanes(D()) == 8) {
@@ -124,7 +126,7 @@ HWY_INLINE hn::Vec<D> row(D d, const float* base, const std::uint16_t* index, st
   }
 }
 
-// Four floats of each of the eight rows that begin at base + index[k]: a transpose in registers.
+// Four floats of each of the eight rows that start at base + index[k]: a transpose in registers.
 struct Rows {
   Eight3 v;
   Eight w;
@@ -163,8 +165,8 @@ HWY_INLINE void add_row(D, float* base, const std::uint16_t* index, std::size_t 
   }
 }
 
-// The way back: adds f.x f.y f.z 0 to the rows, in the order 0 4 1 5 2 6 3 7 however many lanes
-// there are, since some of the eight may be the same row.
+// The inverse of load_rows(): adds f.x f.y f.z 0 to the rows, in the order 0 4 1 5 2 6 3 7 for any
+// number of lanes, because some of the eight rows may be the same.
 HWY_INLINE void add_rows(float* base, const std::uint16_t* index, const Eight3& f) {
   const Lanes d;
   const hn::Repartition<double, Lanes> wide;
@@ -188,7 +190,7 @@ HWY_INLINE void add_rows(float* base, const std::uint16_t* index, const Eight3& 
   }
 }
 
-// base[index[k]] += a_k, one after the other.
+// base[index[k]] += a_k, one after another.
 HWY_INLINE void add_to(float* base, const std::uint16_t* index, const Eight& a) {
   HWY_ALIGN float value[8];
   store(a, value);

@@ -1,5 +1,5 @@
-// The forces of all terms at a state. The material's are computed by one of two implementations,
-// chosen at construction: plain loops in double precision, or packed ones in single precision
+// The forces of all terms at a state. One of two implementations computes those of the material,
+// chosen at construction: plain loops in double precision, or packed loops in single precision
 // (forces/packed.h). The tests compare both with the terms of forces/material_terms.h.
 #pragma once
 
@@ -18,9 +18,9 @@
 
 namespace sinew {
 
-// What pulls the nodes at a state, and what evaluating it showed of the tets.
+// The forces on the nodes at a state, and the tets found near inversion.
 struct NodalForces {
-  std::vector<Vec3> force;       // in all on each node [N] (nodes)
+  std::vector<Vec3> force;       // sum of all forces on each node [N] (nodes)
   double heat = 0.0;             // power that dashpots, viscosity and drag turn into heat [W]
   std::vector<LowTet> low_tets;  // tets near inversion
 };
@@ -32,14 +32,14 @@ class PlainMaterial {
 
   // Sets force and low_tets of `found`, and adds the power of dashpots and drag to its heat.
   void evaluate(const Model& model, const Vec3& gravity, const State& state, NodalForces& found);
-  // The tets at x; taken from evaluate() if its last positions were these.
+  // The tets at x; the results of evaluate() are reused if its last positions were the same.
   const TetState& tets(const Model& model, std::span<const Vec3> x);
 
  private:
   std::vector<Vec3> spring_force_;  // on end 0 of each spring [N] (springs)
   TetState tets_;
-  std::vector<Vec3> tets_at_;  // the positions of tets_ [m] (nodes); empty: none yet
-  std::vector<double> power_;  // of the drag [W] (blocks)
+  std::vector<Vec3> tets_at_;  // the positions of tets_ [m] (nodes); empty: not computed yet
+  std::vector<double> power_;  // power of the drag [W] (blocks)
 };
 
 // The same in single precision.
@@ -54,32 +54,32 @@ class PackedMaterial {
  private:
   PackedForces packed_;
   TetState tets_;
-  std::vector<double> power_;  // of the drag [W] (patches)
+  std::vector<double> power_;  // power of the drag [W] (patches)
 };
 
-// Owns the arrays of all results, so that an evaluation allocates nothing. A reference that it
-// returns is valid until the next call of the same function. What a function returns depends on its
-// arguments alone, never on earlier calls.
+// Owns the arrays of all results, so an evaluation allocates nothing. A returned reference is valid
+// until the next call of the same function. A result depends on the arguments only, never on
+// earlier calls.
 class ForceEvaluator {
  public:
-  // The model has to outlive the object.
+  // The model must outlive the object.
   ForceEvaluator(const Model& model, Precision precision);
 
   // Springs, dashpots, network, volume, viscosity, gravity, drag, and all `Terms` at state.time.
-  // Pinned nodes and anchors get only what the material pulls.
+  // Pinned nodes and anchors get only the material's forces.
   const NodalForces& evaluate(const Controls& controls, const State& state);
 
-  // The tets at positions x, in double precision. Free of cost in double precision if the last
-  // evaluate() was there.
+  // The tets at positions x, in double precision. With double precision the call costs nothing if
+  // the last evaluate() was at x.
   const TetState& tets(std::span<const Vec3> x);
-  // Their volumes alone [m3] (tets).
+  // Only their volumes [m3] (tets).
   std::span<const double> tet_volumes(std::span<const Vec3> x);
 
   // Products with the tangent in double precision.
   TangentProduct& products() { return products_; }
-  // Products with what stiffens, by the packed forces; none in double precision, or where springs
-  // have a stiffness and are not only dashpots: differences of forces do not tell what stiffens.
-  // `controls` and `x` have to outlive them.
+  // Products with the stiffening part of the tangent, by the packed forces. None in double
+  // precision, or if springs have a stiffness: differences of forces cannot separate the stiffening
+  // part. `controls` and `x` must outlive the result.
   std::optional<PackedStiffness> packed_products(const Controls& controls,
                                                  const std::vector<Vec3>& x);
 

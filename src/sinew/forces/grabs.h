@@ -1,9 +1,9 @@
-// Grabs: springs of rest length zero from nodes to points that are moved from outside, such as a
-// hand that pulls. For node i with stiffness k_i and target p_i
+// Grabs: springs of rest length zero from nodes to points that a user moves, such as a hand. For
+// node i with stiffness k_i and target p_i
 //
 //   W = k_i / 2 |p_i - x_i|^2,   force k_i (p_i - x_i),   second derivative k_i
 //
-// Only nodes that are free to move are pulled.
+// Only free nodes are pulled.
 #pragma once
 
 #include "sinew/forces/term.h"
@@ -49,7 +49,7 @@ struct GrabTerm {
   }
 };
 
-// What one grab pulls its nodes with in all, the pinned ones left out [N].
+// The total force of a grab on its free nodes [N].
 inline Vec3 grab_pull(const Model& model, const Grab& grab, std::span<const Vec3> x) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < grab.nodes.size(); ++i) {

@@ -10,7 +10,7 @@
 namespace sinew {
 namespace {
 
-// Nodes of the body whose motion is given.
+// The number of the body's nodes with a prescribed motion.
 Index count_held(const Model& model, const Body& body) {
   Index held = 0;
   for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) {
@@ -29,7 +29,7 @@ Vec3 mean_velocity(const Model& model, const State& state, const Body& body) {
   return momentum / mass;
 }
 
-// How fast the body's nodes fly apart: the root mean square of |v_i - v|, by mass [m/s].
+// The speed at which the body's nodes fly apart: the root mean square of |v_i - v|, by mass [m/s].
 double scatter_speed(const Model& model, const State& state, const Body& body, const Vec3& v) {
   double square = 0.0;
   double mass = 0.0;
@@ -40,11 +40,12 @@ double scatter_speed(const Model& model, const State& state, const Body& body, c
   return std::sqrt(square / mass);
 }
 
-// w [1/s]: the larger of 8 sqrt(mu / rho) / V^(1/3), with the means of the body's materials, and
-// 2 v / V^(1/3), v how fast the nodes fly apart. The second is that of bodies hit much faster than
-// their waves run: a critically damped pull stops what leaves with v after v / (e w), a fifth of
-// the body's size. Without it the nodes would scatter over many times that size, and the energy of
-// the volume that they then enclose be set free at once where the law comes back.
+// w [1/s]: the larger of 8 sqrt(mu / rho) / V^(1/3), with the means of the body's materials, and 2
+// v / V^(1/3), with v = scatter_speed(). The second is for bodies that are hit much faster than
+// their wave speed: a critically damped pull stops nodes of speed v after v / (e w), a fifth of the
+// body's size. Without it the nodes would scatter over many times that size. They would then
+// enclose a large volume, and its energy would be released at once when the material law acts
+// again.
 double frequency(const Model& model, const State& state, const Body& body, const Vec3& drift) {
   double stiffness = 0.0;
   for (auto t = uz(body.tets.begin); t < uz(body.tets.end); ++t) {

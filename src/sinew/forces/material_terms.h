@@ -1,6 +1,6 @@
-// The terms of the material and gravity, each by itself in plain loops: the reference that the
-// tests compare the fused loops with (forces/force_evaluator.h, forces/stiffness.h,
-// forces/packed.h, solver/tangent_matrix.h), which compute all terms at once.
+// The terms of the material and gravity, one by one in plain loops: the reference for the tests of
+// the fused loops (forces/force_evaluator.h, forces/stiffness.h, forces/packed.h,
+// solver/tangent_matrix.h), which compute all terms at once.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,7 @@ struct SpringTerm {
   static constexpr bool isotropic = false;
   static double energy(const Configuration& at);
   static void add_forces(const Configuration& at, std::span<Vec3> forces);
-  // Of every spring, those without a stiffness among them: distances join bodies too.
+  // Visits every spring, also those without stiffness: distance constraints join bodies too.
   template <class F>
   static void for_each_element(const Configuration& at, Tangent tangent, const F& visit) {
     static constexpr std::array<double, 2> weights = {1.0, -1.0};
@@ -59,8 +59,8 @@ struct NetworkTerm {
   }
 };
 
-// Its tangent has another shape than an Element: for tets and cells with pressures s and stiffness
-// k, sum k g_a g_b^T + s d2v/dx_a dx_b.
+// Its tangent is not a sum of Elements: for tets and cells with pressures s and stiffness k it is
+// sum k g_a g_b^T + s d2v/dx_a dx_b.
 struct VolumeTerm {
   static constexpr Account account = Account::elastic;
   static double energy(const Configuration& at);
@@ -79,25 +79,25 @@ struct GravityTerm {
   static void for_each_element(const Configuration&, Tangent, const F&) {}
 };
 
-// The pairs of a tet's corners, each with the other two in the order that makes all four an even
-// permutation; then d2v/dx_a dx_b = -[x_d - x_c]_x / 6.
+// The pairs a, b of a tet's corners, with the other two corners in the order that makes (a, b, c,
+// d) an even permutation; then d2v/dx_a dx_b = -[x_d - x_c]_x / 6.
 struct CornerPair {
   std::size_t a, b, c, d;
 };
 inline constexpr std::array<CornerPair, 6> corner_pairs = {
     {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2}, {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}}};
 
-// What VolumeTerm's blocks are made of, at one place.
+// The quantities in VolumeTerm's blocks, at one configuration.
 struct VolumeParts {
   explicit VolumeParts(const Configuration& at);
 
   struct Cell {
     double stiffness = 0.0;      // kappa_c / V_c [Pa/m3]
-    std::vector<Index> nodes;    // each once for each of its tets
+    std::vector<Index> nodes;    // once for each of its tets
     std::vector<Vec3> gradient;  // [m2] (nodes)
   };
   std::vector<double> push;                   // s of the tets [Pa] (tets)
-  std::vector<double> stiffness;              // d2W/dv2 of their own energies [Pa/m3] (tets)
+  std::vector<double> stiffness;              // d2W/dv2 of the tets' own energies [Pa/m3] (tets)
   std::vector<std::array<Vec3, 4>> gradient;  // dv/dx of the corners [m2] (tets)
   std::vector<Cell> cells;
 };

@@ -9,7 +9,7 @@
 namespace sinew {
 namespace {
 
-// The stiffnesses k_ij, j > i, of a node i, in the order in which its neighbours were met.
+// The stiffnesses k_ij, j > i, of a node i, in the order in which its neighbours were found.
 struct UpperRow {
   std::vector<Index> node;
   std::vector<double> stiffness;
@@ -35,7 +35,7 @@ void add_cell(std::span<const Index> nodes, std::span<const Vec3> g, double weig
   }
 }
 
-// Appends the rows of a body's nodes to the model's, each in increasing order.
+// Appends the rows of a body's nodes to those of the model, each in ascending order.
 void append_rows(Model& model, const std::vector<UpperRow>& upper, Index first_node) {
   std::vector<Index> length(upper.size(), 0);
   for (std::size_t i = 0; i < upper.size(); ++i) {
@@ -53,7 +53,8 @@ void append_rows(Model& model, const std::vector<UpperRow>& upper, Index first_n
     model.network_node[slot] = first_node + static_cast<Index>(column);
     model.network_stiffness[slot] = k;
   };
-  // The lower neighbours of a node come first because they put themselves there before its own row.
+  // The lower neighbours of a node come first: they were added to its row before its own
+  // neighbours.
   std::vector<std::pair<Index, double>> row;
   for (std::size_t i = 0; i < upper.size(); ++i) {
     row.clear();
@@ -119,7 +120,7 @@ double network_energy(const Model& model, std::span<const Vec3> x) {
       if (j < n) continue;
       const Vec3 now = x[j] - x[n];
       const Vec3 rest = model.rest_position[j] - model.rest_position[n];
-      // |now|^2 - |rest|^2 without the loss of digits
+      // now|^2 - |rest|^2 without cancellation
       sum += 0.5 * model.network_stiffness[uz(e)] * (now - rest).dot(now + rest);
     }
     return sum;

@@ -13,7 +13,7 @@ namespace sinew {
 // Gradients of the linear shape functions of a tet, G_a [1/m]: grad u = sum_a u_a G_a^T.
 std::array<Vec3, 4> shape_gradients(const std::vector<Vec3>& nodes, const Tet& tet);
 
-// Appends to the model's network the rows of a body's nodes, the model's next ones:
+// Appends the rows of a body's nodes, the model's next ones, to the model's network:
 //
 //   k_ij = -L_ij,   L = sum over regions r of (1 - beta_r) L_edge,r + beta_r L_tet,r
 //   L_tet,r  = sum_{t in r} mu_t V_t G_a . G_b
@@ -24,7 +24,7 @@ std::array<Vec3, 4> shape_gradients(const std::vector<Vec3>& nodes, const Tet& t
 void add_network(Model& model, const TetMesh& mesh, const std::vector<Material>& materials,
                  std::span<const int> tet_region, Index first_node);
 
-// What the network pulls on the node, sum_j k_ij (x_j - x_i) [N].
+// The force of the network on the node, sum_j k_ij (x_j - x_i) [N].
 inline Vec3 network_pull(const Model& model, std::span<const Vec3> x, Index node) {
   Vec3 sum = Vec3::Zero();
   const auto n = uz(node);

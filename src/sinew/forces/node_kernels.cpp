@@ -14,8 +14,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Three doubles: the lower lanes of a vector, the fourth zero; or one by one where the instruction
-// set has no vectors of four.
+// Three doubles: the lower lanes of a vector with the fourth zero, or single values if the
+// instruction set has no vectors of four.
 #if HWY_MAX_BYTES >= 32
 
 using Wide = hn::CappedTag<double, 4>;
@@ -107,7 +107,7 @@ void displacements(const Frame& frame, std::span<const Index> nodes, const Model
   }
 }
 
-// m (g - drag w) of a free node; adds to the power of the drag.
+// m (g - drag w) of a free node; the power of the drag is added to `power`.
 HWY_INLINE Three gravity_and_drag(const Model& model, const Three& gravity, const Vec3& w,
                                   std::size_t i, double& power) {
   const double m = model.mass[i];

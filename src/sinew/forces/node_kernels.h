@@ -1,5 +1,5 @@
-// The loops over nodes of a step of Verlet, the three coordinates of a node at a time, for every
-// instruction set that the processor may have; all give the same bits.
+// The loops over nodes of a Verlet step. They process the three coordinates of a node together, for
+// every instruction set that the processor may have; all give the same bits.
 #pragma once
 
 #include <span>
@@ -10,29 +10,29 @@
 
 namespace sinew {
 
-// The way a body has gone as a whole, which its displacements leave out: x = c + R (X - C + u).
+// The rigid motion of a body, which is excluded from its displacements: x = c + R (X - C + u).
 struct Frame {
   Mat3 rotation = Mat3::Identity();  // R
   Vec3 centre = Vec3::Zero();        // c [m]
   Vec3 rest_centre = Vec3::Zero();   // C [m]
   Vec3 velocity = Vec3::Zero();      // of the centre [m/s]
 };
-// u and, where asked for, R^T (v - the centre's velocity) of the nodes, four floats each, the
-// fourth zero; those of a node of -1 are left as they are.
+// u and, if v is given, R^T (v - the centre's velocity) of the nodes: four floats each, the fourth
+// zero. Entries of a node of -1 are not changed.
 void frame_displacements(const Frame& frame, std::span<const Index> nodes, const Model& model,
                          const State& state, float* u, float* v);
 
-// force = what is given, plus m (g - drag w) on the free nodes [N]; returns the power of the drag
-// [W]. Given are the forces themselves, of a range of nodes, ...
+// force = given force plus m (g - drag w) on the free nodes [N]; returns the power of the drag [W].
+// The given forces are those in `force` of a range of nodes, ...
 double add_gravity_and_drag(const Model& model, const Vec3& gravity, const std::vector<Vec3>& w,
                             Range nodes, std::vector<Vec3>& force);
-// ... or four floats a node, of which -1 is none.
+// ... or four floats per node; -1 is no node.
 double add_gravity_and_drag(const Model& model, const Vec3& gravity, const std::vector<Vec3>& w,
                             std::span<const Index> nodes, const float* given,
                             std::vector<Vec3>& force);
 
-// The free nodes among them: w += kick / m f, x += h w. Returns whether all of them are finite and
-// nearer than `farthest` [m] in every coordinate.
+// For the free nodes of the range: w += kick / m f, x += h w. Returns whether all positions are
+// finite and within `farthest` [m] in every coordinate.
 bool kick_and_drift(const Model& model, const std::vector<Vec3>& force, double kick, double h,
                     double farthest, Range nodes, State& state);
 

@@ -1,13 +1,13 @@
-// Soft obstacles: rigid, frictionless spheres that press on the surface of bodies. Hard ones are
-// contacts (contact/colliders.h); here they add nothing.
+// Soft obstacles: rigid, frictionless spheres that press on the surface of bodies. Hard obstacles
+// are contacts (contact/colliders.h) and have no forces here.
 // docs/methods/obstacles.md.
 //
-// A node of the surface at x, with A its share of the surface's area at rest, is pushed out of the
-// sphere of centre c and radius R by a pressure in proportion to its depth:
+// A surface node at x whose share of the surface area at rest is A is pushed out of the sphere of
+// centre c and radius R by a pressure proportional to its depth:
 //
 //   W = k A/2 max(0, R - |x - c|)^2
 //
-// Only nodes that are free to move are pushed; nothing but nodes is looked at.
+// Only free nodes are pushed; edges and triangles are not tested.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 namespace sinew {
 
 // The formula on plain values: r = x - c [m], radius [m], stiffness k A [N/m].
-// A node at the very centre has no way out: no force.
+// A node exactly at the centre has no direction: no force.
 inline double obstacle_energy(const Vec3& r, double radius, double stiffness) {
   const double depth = std::max(0.0, radius - r.norm());
   return 0.5 * stiffness * depth * depth;
@@ -34,7 +34,7 @@ inline Vec3 obstacle_push(const Vec3& r, double radius, double stiffness) {
 }
 
 // The second derivative of the energy times u: k A [n (n . u) - (R/|r| - 1) (u - n (n . u))]. With
-// `only_stiffening`, without its negative part across n: positive semidefinite.
+// `only_stiffening` the negative part, across n, is left out: positive semidefinite.
 inline Vec3 obstacle_stiffness_times(const Vec3& r, double radius, double stiffness, const Vec3& u,
                                      bool only_stiffening = false) {
   const double distance = r.norm();
@@ -47,13 +47,13 @@ inline Vec3 obstacle_stiffness_times(const Vec3& r, double radius, double stiffn
 // Adds the obstacle to the model. Call after the last add_body.
 void add_obstacle(Model& model, Obstacle obstacle);
 
-// Adds a rigid triangle mesh: its vertices in the world [m] become nodes of the Model that a pin
-// moves along the obstacle's path, as anchors do; triangles are indices into `vertices`. Call after
+// Adds a rigid triangle mesh. Its vertices in the world [m] become nodes of the Model that a pin
+// moves along the obstacle's path, like anchors; triangles are indices into `vertices`. Call after
 // the last add_body.
 void add_mesh_obstacle(Model& model, Obstacle obstacle, std::span<const Vec3> vertices,
                        std::span<const Triangle> triangles);
 
-// Where the obstacles' centres are at a time [m] (obstacles).
+// The centres of the obstacles at a time [m] (obstacles).
 std::vector<Vec3> obstacle_centers(const Model& model, double time);
 
 struct ObstacleTerm {
@@ -62,11 +62,11 @@ struct ObstacleTerm {
 
   static double energy(const Configuration& at);
   static void add_forces(const Configuration& at, std::span<Vec3> forces);
-  // One for every node that an obstacle presses.
+  // Visits one element for every node that an obstacle pushes.
   template <class F>
   static void for_each_element(const Configuration& at, Tangent tangent, const F& visit);
-  // Sum of k A of the obstacles; 0 but on the surface. A step that is stable with it is stable
-  // whichever nodes the obstacles come to touch.
+  // Sum of k A of the obstacles; 0 off the surface. A step that is stable with it is stable for any
+  // nodes that the obstacles come to touch.
   static double most_stiffness(const Model& model, Index node) {
     if (uz(node) >= model.surface_share.size()) return 0.0;
     double sum = 0.0;
@@ -99,7 +99,7 @@ void ObstacleTerm::for_each_element(const Configuration& at, Tangent tangent, co
   }
 }
 
-// What an obstacle and the bodies do to each other.
+// The interaction of an obstacle and the bodies.
 struct ObstacleReading {
   std::string name;
   Vec3 center = Vec3::Zero();  // [m]
@@ -108,14 +108,14 @@ struct ObstacleReading {
   double depth = 0.0;          // of the deepest node [m]
   Index contacts = 0;          // nodes that it pushes
 };
-// The force that its travel so far goes against [N]: that of an indenter, > 0 where it is pushed
-// back. 0 before it has moved.
+// The force on the obstacle against its travel [N]: that on an indenter, > 0 if it is pushed back.
+// 0 before it has moved.
 inline double against_travel(const ObstacleReading& reading) {
   const double travel = reading.travel.norm();
   return travel > 0.0 ? -reading.force.dot(reading.travel) / travel : 0.0;
 }
 
-// Name, centre and travel of all; force, depth and contacts of those that are soft.
+// Name, centre and travel of all obstacles; force, depth and contacts of the soft ones.
 std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const Vec3> x,
                                             double time);
 

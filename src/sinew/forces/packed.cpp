@@ -9,10 +9,11 @@
 namespace sinew {
 namespace {
 
-// A body that has turned by less than this [rad] counts as not turned.
+// Rotations below this angle [rad] count as none.
 constexpr double least_turn = 1e-9;
 
-// Columns: along the first edge, in the plane, across it. Zero where the plane is lost.
+// Columns: along the first edge, in the plane, normal to it. Zero if the three points have no
+// plane.
 Mat3 axes_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   const Vec3 along = b - a;
   const Vec3 across = along.cross(c - a);
@@ -81,7 +82,7 @@ void PackedForces::compute_cell_pressures() {
   });
 }
 
-// Into the frames of the nodes' bodies, where gather() expects them.
+// Rotates the forces into the frames of the nodes' bodies, as gather() expects them.
 void PackedForces::turn_loose_forces(const Patch& patch) {
   for (auto s = uz(patch.slots.begin); s < uz(patch.slots.end); ++s) {
     float* f = &slot_force_[4 * s];

@@ -1,4 +1,4 @@
-// How fans and stars become groups of eight, for packer.cpp.
+// Puts fans and stars into groups of eight, for packer.cpp.
 #pragma once
 
 #include <algorithm>
@@ -27,8 +27,8 @@ struct Star {
   }
 };
 
-// The same items so that neighbours in the list are far apart: an item that adds to a node right
-// after another one has to wait for it.
+// Reorders the items so that neighbours in the list are far apart. An item that adds to the same
+// node as the item before it has to wait for it.
 template <class Item>
 void spread(std::vector<Item>& items) {
   const std::size_t n = items.size();
@@ -40,8 +40,8 @@ void spread(std::vector<Item>& items) {
   items = std::move(out);
 }
 
-// Calls emit(length, items) with eight items of that length at a time. Those that are left of a
-// length are cut; of the single ones, the last call may get fewer than eight.
+// Calls emit(length, items) with eight items of one length at a time. The remaining items of a
+// length are split. The last call, with single ones, may get fewer than eight.
 template <class Item, class Emit>
 void group_by_length(std::vector<Item> items, const Emit& emit) {
   std::size_t longest = 0;
@@ -66,7 +66,7 @@ void group_by_length(std::vector<Item> items, const Emit& emit) {
   }
 }
 
-// Appends eight of each of `fields` fields, zero to begin with, and sets single values in them.
+// Appends eight values for each of `fields` fields, initially zero, and sets single values in them.
 class Fields {
  public:
   Fields(std::vector<float>& data, Index fields) : data_(data), first_(data.size()) {

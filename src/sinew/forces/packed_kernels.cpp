@@ -16,7 +16,7 @@ namespace sinew {
 namespace HWY_NAMESPACE {
 namespace {
 
-// Where the loops over groups are in a group's corners and data.
+// The position in a group's corners and data.
 struct Cursor {
   const std::uint16_t* corner;
   const float* data;
@@ -37,9 +37,9 @@ struct Cursor {
   }
 };
 
-// With d the change of an edge from axis[0], e = E + d, and for the axis itself e_1:
+// With d the change of an edge from axis[0], e = E + d, and index 1 for the axis itself:
 //   6 (v - V) = c_p . e_q + (E_1 x E_p) . d_q,   c_p = d_1 x e_p + E_1 x d_p,
-// the change of e_1 x e_p: nothing that cancels at rest.
+// where c_p is the change of e_1 x e_p: no terms cancel at rest.
 void volumes(const PackedGroups& fans, const float* u, float* change, float* force) {
   Cursor at{fans.corner, fans.data};
   float* sum = force + 3;
@@ -83,7 +83,7 @@ void volumes(const PackedGroups& fans, const float* u, float* change, float* for
 
 // A tet with the pressure s = s' - mu pushes its corners with -(s g_a - s_rest G_a), g_a the
 // gradients of its volume: s = -mu at rest, where the network pulls with mu G_a. With m = -mu / 6,
-// s = -s' / 6 and c_p as above
+// s = -s' / 6 and c_p as above the forces are
 //   on ring[k + 1]   s e_1 x e_p - m c_p,
 //   on ring[k]     -(s e_1 x e_q - m c_q),
 //   on axis[1]      (s e_p - m d_p) x e_q - m E_p x d_q,
@@ -156,8 +156,8 @@ float tet_forces(const PackedGroups& fans, const float* u, const float* change, 
   return smallest_of(smallest);
 }
 
-// As spring_law.h, with |x| - l0 = (|x|^2 - l0^2) / (|x| + l0) from the change of the square, and
-// one division for both: r = 1 / ((|x| + l0) |x|^2).
+// As in spring_law.h, with |x| - l0 = (|x|^2 - l0^2) / (|x| + l0) from the change of the square,
+// and one division for both: r = 1 / ((|x| + l0) |x|^2).
 double spring_forces(const PackedGroups& stars, const float* u, const float* velocity,
                      float* force) {
   Cursor at{stars.corner, stars.data};
@@ -196,8 +196,8 @@ double spring_forces(const PackedGroups& stars, const float* u, const float* vel
   return sum;
 }
 
-// sum_j k_ij u_j for both nodes of a pair, or for one of them where lanes are four: every fourth
-// place of the list has a sum of its own.
+// sum_j k_ij u_j for both nodes of a pair, or for one of them with four lanes: every fourth entry
+// of the list is added to the same partial sum.
 template <class D>
 HWY_INLINE hn::Vec<D> pull_of_rows(D d, const PackedRows& rows, std::size_t begin, std::size_t end,
                                    const float* stiffness, const float* u) {

@@ -1,10 +1,10 @@
 // The loops of PackedForces over groups of eight fans of tets or stars of springs, for every
 // instruction set that the processor may have; all give the same bits.
 //
-// A group is eight fans of the same length, one a lane. Its corners come as
+// A group is eight fans of the same length, one per lane. Its corners are stored as
 //   axis[0], axis[1], ring[0], ring[1], ...   eight of each,
-// 4 x slot: where the four floats of the slot begin. Its data come as a head and then, tet by tet,
-// what belongs to the tet and to the ring's next node, eight of each field.
+// each as 4 x slot: the offset of the slot's four floats. Its data are a head and then, for each
+// tet, the data of the tet and of the ring's next node, eight of each field.
 #pragma once
 
 #include <cstdint>
@@ -32,33 +32,33 @@ struct PackedGroups {
   Index groups = 0;
 };
 
-// change = v - V of every tet; adds share times it to the fourth places of `force` (4 a slot), for
-// all four corners.
+// change = v - V of every tet. Adds share times change to the fourth float of the slots of all four
+// corners in `force` (4 per slot).
 void packed_volumes(const PackedGroups& fans, const float* u, float* change, float* force);
-// Adds the forces of the tets to `force`. u: with the cells' pressures times their weights in the
-// fourth places. Returns the smallest v/V.
+// Adds the forces of the tets to `force`. The fourth floats of u are the cells' pressures times
+// their weights. Returns the smallest v/V.
 float packed_tet_forces(const PackedGroups& fans, const float* u, const float* change,
                         float* force);
 // Adds the forces of the springs; returns the heat of the dashpots [W].
 double packed_spring_forces(const PackedGroups& stars, const float* u, const float* velocity,
                             float* force);
 
-// Rows of the network in pairs: both nodes of a pair pull on the same list of nodes.
+// Rows of the network in pairs: both nodes of a pair have the same list of neighbours.
 struct PackedRows {
   const Index* start = nullptr;           // offsets into `offset` (pairs + 1); multiples of four
   const std::uint32_t* offset = nullptr;  // 4 x node
-  const float* stiffness = nullptr;       // of four of the list: 4 of one node, 4 of the other
+  const float* stiffness = nullptr;       // for four of the list: 4 of one node, 4 of the other
 };
-// The slots whose forces act on the nodes of a patch: those of its own, in their order, and some of
+// The slots with forces on the nodes of a patch: its own, in the order of the nodes, and some of
 // other patches.
 struct PackedSlots {
-  const float* own = nullptr;  // of the first node; four floats a slot
+  const float* own = nullptr;  // of the first node; four floats per slot
   const float* force = nullptr;
   const Index* other = nullptr;         // slots in `force` (others)
-  const std::uint16_t* node = nullptr;  // 4 x the node it acts on, from the patch's first (others)
+  const std::uint16_t* node = nullptr;  // 4 x the node, relative to the patch's first (others)
   Index others = 0;
 };
-// force = R (sum_j k_ij u_j + the forces of the node's slots), four floats each, for the pairs.
+// force = R (sum_j k_ij u_j + the forces of the node's slots), four floats per node, for the pairs.
 void packed_gather(const Frame& frame, const PackedRows& rows, const PackedSlots& slots,
                    const float* u, Range pairs, float* force);
 

@@ -10,9 +10,9 @@
 namespace sinew {
 namespace {
 
-// Of an edge. Less drowns in the rounding of displacements as long as the body. Volumes and what
-// they push with are polynomials of the positions, smooth over a share of an edge even where a tet
-// is flat.
+// Share of an edge. A smaller displacement is lost in the rounding of displacements of the size of
+// the body. Volumes and their pressures are polynomials of the positions, smooth over a share of an
+// edge even if a tet is flat.
 constexpr double way_in_edges = 3e-4;
 
 // The edge of a regular tet of the mean volume [m]: V = l^3 / (6 sqrt 2).
@@ -51,7 +51,7 @@ void PackedStiffness::times(double a, double b, std::span<const Vec3> u, std::sp
     std::fill(out.begin(), out.end(), Vec3::Zero());
     return;
   }
-  // A velocity of one metre a second where nothing is displaced.
+  // If a is 0, the largest velocity is one metre per second.
   const double s = a > 0.0 ? longest_way_ / (a * longest) : 1.0 / (b * longest);
   parallel_for(model_.node_count(), [&](Index i) {
     const auto n = uz(i);

@@ -1,5 +1,5 @@
-// Products of the tangent from differences of packed forces: less exact than forces/stiffness.h,
-// and several times as fast.
+// Products of the tangent from differences of packed forces: less accurate than forces/stiffness.h,
+// but several times as fast.
 #pragma once
 
 #include <span>
@@ -13,15 +13,15 @@ namespace sinew {
 
 class PackedStiffness {
  public:
-  // At positions x, of a model whose springs are only dashpots; what the arguments refer to has to
-  // outlive the object. `packed` is used up to the last product.
+  // At positions x, for a model whose springs are only dashpots. The arguments must outlive the
+  // object; it uses `packed` in every product.
   PackedStiffness(const Model& model, const Controls& controls, const std::vector<Vec3>& x,
                   PackedForces& packed);
 
-  // out = (a K + b C) u as TangentProduct::times() with Tangent::only_stiffening, to about
-  // 1e-3 of its norm (1e-2 where edges are a hundredth of what they were): -(f(x + s a u, s b u) -
-  // f(x, 0)) / s, with s so small that nothing moves by more than 0.03 % of an edge. One evaluation
-  // of the packed forces.
+  // out = (a K + b C) u like TangentProduct::times() with Tangent::only_stiffening, with a relative
+  // error of about 1e-3 (1e-2 if edges have a hundredth of their rest length): -(f(x + s a u, s b
+  // u) - f(x, 0)) / s, with s so small that no node moves by more than 0.03 % of an edge. The cost
+  // is one evaluation of the packed forces.
   void times(double a, double b, std::span<const Vec3> u, std::span<Vec3> out);
 
  private:

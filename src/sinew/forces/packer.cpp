@@ -1,4 +1,4 @@
-// Puts the arrays of PackedForces together.
+// Fills the arrays of PackedForces.
 #include <algorithm>
 #include <map>
 #include <numeric>
@@ -15,10 +15,11 @@ namespace {
 
 constexpr std::size_t longest_fan = 6;
 constexpr std::size_t longest_star = 8;
-constexpr std::size_t most_slots = 0x10000 / 4;  // of a patch: 4 x slot has 16 bits
+constexpr std::size_t most_slots = 0x10000 / 4;  // per patch: 4 x slot has 16 bits
 constexpr std::size_t most_slots_of_group = 8 * (3 + std::max(longest_fan, longest_star));
 
-// Three nodes of the body: one in its middle, the farthest from it, the farthest from their line.
+// Three nodes of the body: the one nearest to its middle, the farthest from that one, and the
+// farthest from the line of both.
 std::array<Index, 3> triad_of(const Model& model, const Body& body) {
   const auto& X = model.rest_position;
   const auto best = [&](const auto& score) {
@@ -86,8 +87,8 @@ class Packer {
  private:
   Index body_of(Index node) const { return to_.body_of_[uz(packed_of_[uz(node)])]; }
 
-  // Patches of the bodies' nodes, and of those of no body, each in an order that keeps neighbours
-  // near.
+  // Makes the patches of the bodies' nodes and of the nodes of no body; in each, neighbours are
+  // near each other.
   void order_nodes() {
     packed_of_.assign(model_.rest_position.size(), -1);
     patch_of_.assign(model_.rest_position.size(), -1);
@@ -119,7 +120,8 @@ class Packer {
     }
   }
 
-  // A tet's share in its corners' cells goes by the cells' weights; in units of the mean tet.
+  // The shares of a tet in its corners' cells are proportional to the cells' weights, in units of
+  // the mean weight.
   void weigh_cells() {
     if (model_.cell_count() == 0) return;
     weight_ = quarter_volumes_of_cells(model_, {0, model_.tet_count()});
@@ -157,8 +159,8 @@ class Packer {
     std::replace(to_.slot_cell_.begin() + patch.slots.begin, to_.slot_cell_.end(), free_cell, -1);
   }
 
-  // Goes on in a patch without nodes of its own where the next group may need more slots than can
-  // be counted: a node may have any number of tets and springs.
+  // Starts a patch without nodes of its own if the next group may need more slots than 16 bits can
+  // count: a node may have any number of tets and springs.
   void make_room() {
     if (to_.slot_node_.size() - first_slot_ + most_slots_of_group <= most_slots) return;
     const Index body = to_.patches_[uz(patch_)].body;
@@ -185,8 +187,8 @@ class Packer {
     return s;
   }
 
-  // 4 x the slot of the node for the cell, counted from the patch's first. A slot without a cell
-  // takes the first that comes.
+  // 4 x the slot of the node for the cell, relative to the patch's first. A slot without a cell
+  // gets the first cell that is requested.
   std::uint16_t slot(Index node, Index cell) {
     const Index n = packed_of_[uz(node)];
     const Index s = slot_of_[uz(n)];
@@ -253,7 +255,7 @@ class Packer {
   // --- springs ---
 
   void pack_springs(std::vector<Index> springs) {
-    // By the end that comes first in the patch's order.
+    // By the end that is first in the patch's order.
     const auto centre_of = [&](Index s) {
       const auto [i, j] = model_.springs[uz(s)];
       return packed_of_[uz(i)] < packed_of_[uz(j)] ? i : j;
@@ -285,7 +287,7 @@ class Packer {
     for (std::size_t k = 0; k < length; ++k) {
       Fields fields(to_.star_data_, star_spring_fields);
       for (std::size_t lane = 0; lane < uz(packed_lanes); ++lane) {
-        if (lane >= stars.size()) {  // a spring that does nothing, of some length
+        if (lane >= stars.size()) {  // a spring of length 1 without stiffness
           fields.put(0, lane, 1.0);
           continue;
         }
@@ -338,7 +340,7 @@ class Packer {
     }
   }
 
-  // The rows of two nodes side by side, with the diagonal: -sum_j k_ij on the node itself.
+  // The rows of two nodes next to each other, with the diagonal: -sum_j k_ij on the node itself.
   void pack_network() {
     if (model_.network_start.empty()) return;
     to_.row_start_.push_back(0);
@@ -403,7 +405,7 @@ class Packer {
     to_.slot_velocity_.assign(4 * slots, 0.0f);
   }
 
-  static constexpr Index free_cell = -2;  // of a slot that has no cell yet
+  static constexpr Index free_cell = -2;  // a slot without a cell so far
 
   const Model& model_;
   PackedForces& to_;
@@ -411,9 +413,9 @@ class Packer {
   std::vector<Index> patch_of_;   // (nodes)
   std::vector<double> weight_;    // (cells)
   std::vector<Index> slot_of_;    // the node's first slot in the patch (packed nodes) -1: none
-  std::map<std::pair<Index, Index>, Index> other_slots_;  // (packed node, cell) -> further slots
-  std::size_t first_slot_ = 0;                            // of the patch
-  Index patch_ = 0;                                       // that is being packed
+  std::map<std::pair<Index, Index>, Index> other_slots_;  // (packed node, cell) -> other slots
+  std::size_t first_slot_ = 0;                            // first slot of the patch
+  Index patch_ = 0;                                       // the current patch
 };
 
 PackedForces::PackedForces(const Model& model) {

@@ -1,4 +1,4 @@
-// The precision of the material's forces, with the words that scenes have for it.
+// The precision of the material's forces, and its names in scenes.
 #pragma once
 
 #include <array>
@@ -7,7 +7,7 @@
 
 namespace sinew {
 
-// Of the forces of tets and springs.
+// The precision of the forces of tets and springs.
 enum class Precision { single, double_ };
 constexpr std::array<Word<Precision>, 2> words_of(Precision) {
   return {{{Precision::single, "single"}, {Precision::double_, "double"}}};

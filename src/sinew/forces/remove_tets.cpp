@@ -22,7 +22,7 @@ void require_bodies_of(const Model& model, std::span<const BodySpec> bodies) {
   }
 }
 
-// The body without its tets that are gone, and where its nodes and tets are in the new model.
+// The body without the removed tets. Enters the new ids of its nodes and tets in `change`.
 BodySpec cut_body(const BodySpec& spec, const Body& body, const std::vector<char>& gone,
                   Index first_node, Index first_tet, TopologyChange& change) {
   BodySpec out = spec;
@@ -34,7 +34,7 @@ BodySpec cut_body(const BodySpec& spec, const Body& body, const std::vector<char
     if (gone[uz(body.tets.begin + t)] != 0) continue;
     for (const Index corner : spec.mesh.tets[uz(t)]) used[uz(corner)] = 1;
   }
-  std::vector<Index> at(used.size(), -1);  // in the new mesh
+  std::vector<Index> at(used.size(), -1);  // ids in the new mesh
   for (std::size_t i = 0; i < used.size(); ++i) {
     if (used[i] == 0) continue;
     at[i] = out.mesh.node_count();
@@ -73,7 +73,7 @@ bool move(std::array<Index, N>& nodes, const TopologyChange& change) {
 Load moved(const Load& load, const TopologyChange& change) {
   Load out = load;
   out.nodes = still_there(load.nodes, change);
-  // What is left of a force keeps what each of its nodes carried.
+  // The remaining nodes of a force carry the same force per node as before.
   if (!load.nodes.empty())
     out.force *= static_cast<double>(out.nodes.size()) / static_cast<double>(load.nodes.size());
   out.faces.clear();
@@ -87,7 +87,7 @@ Load moved(const Load& load, const TopologyChange& change) {
   return out;
 }
 
-// Anchors and the nodes of rigid meshes: those that belong to no body.
+// Copies the nodes that belong to no body: anchors and the nodes of rigid meshes.
 void copy_outer_nodes(const Model& from, Model& to, TopologyChange& change) {
   for (auto i = uz(from.body_node_count()); i < from.rest_position.size(); ++i) {
     change.node[i] = to.node_count();

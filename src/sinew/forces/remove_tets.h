@@ -1,5 +1,5 @@
-// The simplest change of topology: tets are taken out, such as those that a blade or a laser burns
-// away. Masses, springs, network, volume and viscosity are those of the mesh that is left.
+// The simplest change of topology: tets are removed, for example by a blade or a laser. Masses,
+// springs, network, volume and viscosity are those of the remaining mesh.
 #pragma once
 
 #include <span>
@@ -12,19 +12,19 @@ namespace sinew {
 
 struct CutModel {
   Model model;                   // version n + 1
-  std::vector<BodySpec> bodies;  // what it was assembled from, for the next cut
+  std::vector<BodySpec> bodies;  // the bodies that it was assembled from, for the next cut
   TopologyChange change;
 };
 
-// The Model without those tets, from the bodies that it was assembled from. Nodes that no tet is
-// left at go too, and with them what holds, loads, joins or reports them; everything else keeps its
-// order. Tet ids are those of `model`.
+// The Model without those tets, from the bodies that it was assembled from. Nodes without a tet are
+// removed, and so are their pins, loads, ties and probes. Everything else keeps its order. Tet ids
+// are those of `model`.
 //
-// The surfaces that contact knows (Model::skin, Model::surface) are those of the new mesh: they
-// are left empty, for contact/touch_surface.h to build anew.
+// The surfaces for contact (Model::skin, Model::surface) must be those of the new mesh: they are
+// left empty and contact/touch_surface.h rebuilds them.
 //
-// Throws Error(input) where a body would have no tet left, and Error(usage) where a tet id is out
-// of range or the bodies are not those of the model.
+// Throws Error(input) if a body would have no tet left, and Error(usage) if a tet id is out of
+// range or the bodies are not those of the model.
 CutModel remove_tets(const Model& model, std::span<const BodySpec> bodies,
                      std::span<const Index> tets);
 

@@ -1,5 +1,5 @@
-// The formula of a spring with a dashpot, as pure functions on plain values: used by the loops in
-// springs.cpp and by the tests. Nealen et al. 2006, section 4.3.
+// The formula of a spring with a dashpot, as pure functions on plain values; springs.cpp and the
+// tests use them. Nealen et al. 2006, section 4.3.
 #pragma once
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 namespace sinew {
 
-// What a spring does to its ends.
+// The force of a spring on its ends.
 struct SpringPull {
   Vec3 force = Vec3::Zero();  // on end i [N]; end j gets its negative
   double heat = 0.0;          // power that the dashpot turns into heat, c (v_ij . n)^2 [W]
@@ -21,14 +21,14 @@ struct SpringPull {
 inline SpringPull spring_pull(const Vec3& x_ij, const Vec3& v_ij, double k, double l0, double c) {
   const double length2 = x_ij.squaredNorm();
   if (length2 == 0.0) return {};
-  const double inverse2 = 1.0 / length2;  // the one division: it costs more than all the rest
+  const double inverse2 = 1.0 / length2;  // one division: it costs more than the rest
   const double length = std::sqrt(length2);
   const double along = v_ij.dot(x_ij);
   const double dashpot = c * along * inverse2;
   return {(k * (length - l0) * length * inverse2 + dashpot) * x_ij, dashpot * along};
 }
 
-// The same of a dashpot alone: no square root.
+// The same for a dashpot alone: no square root.
 inline SpringPull dashpot_pull(const Vec3& x_ij, const Vec3& v_ij, double c) {
   const double length2 = x_ij.squaredNorm();
   if (length2 == 0.0) return {};
@@ -43,9 +43,9 @@ inline double spring_energy(const Vec3& x_ij, double k, double l0) {
   return 0.5 * k * extension * extension;
 }
 
-// Change of the force's negative when u_ij = u_j - u_i is added to x_ij, the Hessian's block times
-// u_ij:  k [ (l0/l) n (n . u) + (1 - l0/l) u ].  With `only_stiffening`, the transverse part of a
-// compressed spring, which is negative, is left out: what remains is positive semidefinite.
+// The negative change of the force if u_ij = u_j - u_i is added to x_ij, the Hessian's block times
+// u_ij:  k [ (l0/l) n (n . u) + (1 - l0/l) u ].  With `only_stiffening` the transverse part of a
+// compressed spring, which is negative, is left out: the result is positive semidefinite.
 inline Vec3 spring_stiffness_times(const Vec3& x_ij, double k, double l0, const Vec3& u_ij,
                                    bool only_stiffening = false) {
   const double length2 = x_ij.squaredNorm();
@@ -56,15 +56,15 @@ inline Vec3 spring_stiffness_times(const Vec3& x_ij, double k, double l0, const 
   return k * (along + transverse * (u_ij - along));
 }
 
-// Change of the dashpot's force with the velocity: c n (n . u). Ends that coincide may part in any
-// direction: c u.
+// The change of the dashpot's force with the velocity: c n (n . u). Ends that coincide may separate
+// in any direction: c u.
 inline Vec3 dashpot_times(const Vec3& x_ij, double c, const Vec3& u_ij) {
   const double length2 = x_ij.squaredNorm();
   if (length2 == 0.0) return c * u_ij;
   return (c * x_ij.dot(u_ij) / length2) * x_ij;
 }
 
-// The two as matrices: what they multiply u_ij with.
+// Both as matrices that multiply u_ij.
 inline Mat3 spring_stiffness_block(const Vec3& x_ij, double k, double l0) {
   const double length2 = x_ij.squaredNorm();
   if (length2 == 0.0) return k * Mat3::Identity();

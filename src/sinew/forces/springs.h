@@ -8,24 +8,24 @@
 
 namespace sinew {
 
-// Sets `force`, that on end 0 of each spring that pulls [N] (springs), from positions and half-step
-// velocities. Returns the power [W] that the dashpots turn into heat.
+// Sets `force`, the force on end 0 of each active spring [N] (springs), from positions and
+// half-step velocities. Returns the power [W] that the dashpots turn into heat.
 double compute_spring_forces(const Model& model, const State& state, std::vector<Vec3>& force);
 
 // Sum over springs of k/2 (|x_ij| - l0)^2 [J].
 double spring_energy(const Model& model, std::span<const Vec3> x);
 
-// |x_ij| / l0 - 1 over the bodies' springs [-]: the largest, and the smallest as a positive share.
+// x_ij| / l0 - 1 over the bodies' springs [-]: the largest value, and the negative of the smallest.
 struct StretchRange {
   double stretch = 0.0;   // longest: 0.25 means 25 % longer than at rest
   double compress = 0.0;  // shortest: 0.25 means 25 % shorter than at rest
-  Index longest = -1;     // spring ids, -1 where there is none
+  Index longest = -1;     // spring ids, -1: none
   Index shortest = -1;
 };
 StretchRange measure_stretch(const Model& model, std::span<const Vec3> x);
 
-// Sum, for a node in the fixed order of its springs, of the forces on the springs' ends 0
-// (springs).
+// The sum of the forces on a node over its springs, in their fixed order. `force`: on end 0 of each
+// spring (springs).
 inline Vec3 gather_springs(const Model& model, const std::vector<Vec3>& force, Index node) {
   Vec3 sum = Vec3::Zero();
   const auto n = uz(node);

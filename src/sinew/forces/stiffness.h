@@ -9,14 +9,14 @@
 
 namespace sinew {
 
-// Products with the tangent. Keeps its arrays from call to call; what it returns depends on the
-// arguments alone.
+// Products with the tangent. Keeps its arrays between calls; a result depends on the arguments
+// only.
 class TangentProduct {
  public:
-  // out = (a K + b C) u: K the second derivative of the energies of springs, network, volume and
-  // all terms, C the dashpots, the viscosity and the drag. `tets` are those at at.x. Nodes whose
-  // motion is given get 0; their u counts. With Tangent::only_stiffening the springs go without the
-  // negative transverse part of those that are compressed.
+  // out = (a K + b C) u: K is the second derivative of the energies of springs, network, volume and
+  // all terms, C the tangent of the dashpots, the viscosity and the drag. `tets` are the tets at
+  // at.x. Nodes with a prescribed motion get 0, but their u counts. With Tangent::only_stiffening
+  // the negative transverse part of compressed springs is left out.
   void times(const Configuration& at, const TetState& tets, double a, double b,
              std::span<const Vec3> u, Tangent tangent, std::span<Vec3> out);
   // out = C u.
@@ -31,11 +31,11 @@ class TangentProduct {
   VolumeForceChange volume_;
 };
 
-// What is in (a K + b C) u besides springs, network, volume and the terms' elements: drag,
-// viscosity and, where only what stiffens counts, the most that bounded terms stiffen a node.
+// The part of (a K + b C) u other than springs, network, volume and the terms' elements: drag,
+// viscosity and, with only_stiffening, the largest stiffness of bounded terms on a node.
 class OuterProduct {
  public:
-  // Everything has to outlive the object; `viscous_force` is scratch (slots).
+  // All arguments must outlive the object; `viscous_force` is scratch (slots).
   OuterProduct(const Model& model, std::span<const Vec3> x, double a, double b,
                std::span<const Vec3> u, Tangent tangent, std::vector<Vec3>& viscous_force);
   Vec3 of(Index node) const;
@@ -53,7 +53,7 @@ class OuterProduct {
 void add_term_products(const Configuration& at, Tangent tangent, double a, std::span<const Vec3> u,
                        std::span<Vec3> out);
 
-// The most that bounded terms stiffen the node [N/m].
+// The largest stiffness that bounded terms may add to the node [N/m].
 double most_stiffness(const Model& model, Index node);
 
 }  // namespace sinew

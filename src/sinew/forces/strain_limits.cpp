@@ -8,7 +8,7 @@
 namespace sinew {
 namespace {
 
-// The length nearest to `length` that the spring's limits allow.
+// The allowed length that is nearest to `length`.
 double allowed_length(const Model& model, std::size_t s, double length) {
   const double l0 = model.rest_length[s];
   const double longest = (1.0 + model.stretch_limit[s]) * l0;

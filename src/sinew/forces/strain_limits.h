@@ -9,20 +9,20 @@
 
 namespace sinew {
 
-// What a sweep did, in springs.
+// The result of a sweep, in springs.
 struct LimitSweep {
   Index moved = 0;
   Index over = 0;  // that violated their limit by more than model.limit_tolerance
 };
 
-// One sweep of Gauss-Seidel over the limited springs, colour by colour: a spring that violates its
-// limit by more than model.limit_tolerance (a share of l0) is moved exactly onto it, its ends
-// weighted by inverse mass, so that momentum is kept. One that may not get longer at all (a
-// distance) is moved however little it violates its limit: it would jerk from one side of the
-// tolerance to the other otherwise.
+// One Gauss-Seidel sweep over the limited springs, colour by colour. A spring that violates its
+// limit by more than model.limit_tolerance (a share of l0) is moved exactly onto it. Its ends are
+// weighted by inverse mass, so momentum is conserved. A spring with stretch limit 0 (a distance
+// constraint) is moved for any violation; otherwise it would jump from one side of the tolerance to
+// the other.
 LimitSweep sweep_limits(const Model& model, std::vector<Vec3>& x);
 
-// The largest violation, as a share of l0; 0 where every limit holds.
+// The largest violation, as a share of l0; 0 if every limit holds.
 double measure_limit_violation(const Model& model, const std::vector<Vec3>& x);
 
 }  // namespace sinew

@@ -1,5 +1,5 @@
 // The concept of a term: an energy whose negative gradient is a force on nodes. The list of all
-// terms is in forces/terms.h; docs/adding-a-force.md tells how to add one.
+// terms is in forces/terms.h; docs/adding-a-force.md explains how to add one.
 #pragma once
 
 #include <cmath>
@@ -13,7 +13,7 @@
 
 namespace sinew {
 
-// The positions, the controls and the time: all that energies and their forces depend on.
+// The configuration that energies and their forces depend on: positions, controls and time.
 struct Configuration {
   const Model& model;
   const Controls& controls;
@@ -21,20 +21,20 @@ struct Configuration {
   double time = 0.0;        // [s], of loads and obstacles
 };
 
-// Where a term's energy is counted.
+// The account in which a term's energy is counted.
 enum class Account {
   elastic,  // stored in the material; acts on pinned nodes too
   gravity,
-  work,     // no store of energy: what it does is work put in
-  contact,  // between bodies and what is outside
+  work,     // no stored energy: the work counts as work put in
+  contact,  // between bodies and obstacles or grabs
 };
 
-// The true tangent; or one that is positive semidefinite, with every obstacle pressing on every
-// node of the surface: what an explicit step has to be stable for.
+// full: the true tangent. only_stiffening: positive semidefinite, with every obstacle in contact
+// with every surface node; an explicit step must be stable for it.
 enum class Tangent { full, only_stiffening };
 
-// A part of the tangent, K_ab = w_a w_b B for any two of its nodes: a spring's has the weights 1
-// and -1, a pull towards a fixed point one node of weight 1.
+// A part of the tangent, K_ab = w_a w_b B for any two of its nodes. A spring has the weights 1 and
+// -1; a pull towards a fixed point has one node of weight 1.
 struct Element {
   std::span<const Index> nodes;
   std::span<const double> weights;  // [-] (nodes)
@@ -42,13 +42,13 @@ struct Element {
   double norm = 0.0;                // at least the largest |eigenvalue| of B [N/m]
 };
 
-// A term whose forces are few beside those of the material. All of the tangent (products, row sums,
-// diagonals, sparsity, which bodies are joined) comes from for_each_element.
+// A term whose forces are few compared with those of the material. The whole tangent (products, row
+// sums, diagonals, sparsity, joined bodies) follows from for_each_element.
 //
 //   account                  where energy() is counted
 //   isotropic                whether B is a constant times the unit matrix, at every x
 //   energy(at)               W [J]
-//   add_forces(at, f)        f -= dW/dx [N] (nodes); on pinned nodes only where it is elastic
+//   add_forces(at, f)        f -= dW/dx [N] (nodes); on pinned nodes only if elastic
 //   for_each_element(at, tangent, visit)
 //                            visit(Element) for every part of d2W/dx2, always in the same order
 //
@@ -62,8 +62,8 @@ concept Term = requires(const Configuration& at, std::span<Vec3> forces) {
   T::for_each_element(at, Tangent::full, [](const Element&) {});
 };
 
-// A term whose tangent has another shape than elements: visit(i, j, K_ij) for every part of every
-// block. That of volume, which the solvers know by name (forces/material_terms.h).
+// A term whose tangent is not a sum of elements: visit(i, j, K_ij) for every part of every block.
+// The volume term is one; the solvers name it explicitly (forces/material_terms.h).
 template <class T>
 concept BlockTerm = requires(const Configuration& at, std::span<Vec3> forces) {
   { T::account } -> std::convertible_to<Account>;
@@ -72,14 +72,14 @@ concept BlockTerm = requires(const Configuration& at, std::span<Vec3> forces) {
   T::for_each_block(at, [](Index, Index, const Mat3&) {});
 };
 
-// A term that may come to act on more nodes within a step gives, instead of its elements, the most
-// that it can stiffen a node [N/m] where the tangent counts only what stiffens.
+// A term that may act on more nodes within a step. With only_stiffening it gives, instead of its
+// elements, the largest stiffness that it may add to a node [N/m].
 template <class T>
 concept Bounded = requires(const Model& model, Index node) {
   { T::most_stiffness(model, node) } -> std::same_as<double>;
 };
 
-// A term whose elements hold a body in its place in the world.
+// A term whose elements hold a body in place in the world.
 template <class T>
 concept Holds = requires {
   requires T::holds;
@@ -94,7 +94,7 @@ void for_each_type(TypeList<T...>, const F& f) {
   (f(T{}), ...);
 }
 
-// --- what follows from the elements ---
+// --- functions that use the elements ---
 
 // Calls visit(i, j, K_ij) for every part of every block.
 template <Term T, class F>
@@ -126,7 +126,7 @@ void add_stiffness_times(T, const Configuration& at, Tangent tangent, double a,
   });
 }
 
-// Calls f(i, j, w_i, w_j) for every two nodes with weights.
+// Calls f(i, j, w_i, w_j) for every pair of nodes with weights other than 0.
 template <class F>
 void for_each_pair(const Element& e, const F& f) {
   for (std::size_t a = 0; a < e.nodes.size(); ++a) {
@@ -137,7 +137,7 @@ void for_each_pair(const Element& e, const F& f) {
   }
 }
 
-// rows[i] += a bound of sum_j |K_ij| [N/m] (nodes).
+// rows[i] += an upper bound of sum_j |K_ij| [N/m] (nodes).
 template <Term T>
 void add_row_sums(T, const Configuration& at, Tangent tangent, std::span<double> rows) {
   T::for_each_element(at, tangent, [&](const Element& e) {
@@ -146,7 +146,7 @@ void add_row_sums(T, const Configuration& at, Tangent tangent, std::span<double>
     const bool alone = e.nodes.size() == 1;
     for_each_pair(e, [&](Index i, Index j, double w_i, double w_j) {
       const double k = std::abs(e.norm * w_i * w_j);
-      rows[uz(i)] += 2.0 * k;  // K_ij, and its share of K_ii where the weights sum to zero
+      rows[uz(i)] += 2.0 * k;  // K_ij, and its share of K_ii if the weights sum to zero
       rows[uz(j)] += 2.0 * k;
     });
     for (std::size_t a = 0; a < e.nodes.size(); ++a) {

@@ -11,7 +11,7 @@ namespace sinew {
 
 namespace {
 
-// Energy of the terms of that account [J].
+// The energy of the terms of the given account [J].
 double energy_of(Account account, const Configuration& at) {
   double sum = 0.0;
   for_each_type(Terms{}, [&](auto term) {
@@ -34,7 +34,7 @@ std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
     const auto k = uz(i);
     v[k] += (0.5 * state.last_step * model.inverse_mass[k]) * force[k];
   });
-  // What rests on something is held by it.
+  // Nodes at rest on a support are held by it.
   std::vector<NodeHold> held;
   std::vector<Vec3> sum;
   warm_start(state, force, sum, held);

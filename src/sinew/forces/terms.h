@@ -1,5 +1,5 @@
-// The list of terms, with their energies and outer forces in sum. A new force is
-// one word in this list (docs/adding-a-force.md).
+// The list of terms, and the sums of their energies and outer forces. A new force is one word in
+// this list (docs/adding-a-force.md).
 #pragma once
 
 #include <span>
@@ -16,54 +16,54 @@
 
 namespace sinew {
 
-// All terms but those of the material and gravity. Forces, energies, products, the tangent matrix,
-// the stable step, which bodies are joined, and the tests follow from this list.
+// All terms except those of the material and gravity. Forces, energies, products, the tangent
+// matrix, the stable step, the joined bodies and the tests follow from this list.
 using Terms = TypeList<TieTerm, LoadTerm, ObstacleTerm, GrabTerm>;
 
-// What the loops of a step compute at once: these, with dashpots, viscosity and drag
+// The terms that the loops of a step compute together, with dashpots, viscosity and drag
 // (forces/force_evaluator.h).
 using FusedTerms = TypeList<SpringTerm, NetworkTerm, VolumeTerm, GravityTerm>;
 
-// Where the state is.
+// The configuration of a state.
 inline Configuration configuration(const Model& model, const Controls& controls,
                                    const State& state) {
   return {model, controls, state.position, state.time};
 }
 
-// The talk's velocity, v(t) = (x(t+h) - x(t-h)) / 2h = w + a h / 2, with w the half-step velocity
-// before t and h the last step; where the motion is given (pins) the half-step velocity itself.
-// `force`: of all terms at the state [N] (nodes).
+// The velocity at the time of the positions, v(t) = (x(t+h) - x(t-h)) / 2h = w + a h / 2, with w
+// the half-step velocity before t and h the last step. For nodes with a prescribed motion (pins) it
+// is the half-step velocity. `force`: of all terms at the state [N] (nodes).
 std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
                                        const std::vector<Vec3>& force);
 
-// What springs, network, volume and ties store [J]; 0 at rest.
+// The energy stored in springs, network, volume and ties [J]; 0 at rest.
 double elastic_energy(const Configuration& at);
 
-// What the rest state minimises [J]: elastic energy plus that of gravity, and of the loads and
-// obstacles at at.time and the grabs, 0 at the rest positions. tet_volume: at at.x [m3] (tets),
-// volumes_of_tets().
+// The energy that the rest state minimises [J]: elastic energy plus that of gravity, of the loads
+// and obstacles at at.time and of the grabs; 0 at the rest positions. tet_volume: at at.x [m3]
+// (tets), volumes_of_tets().
 double potential_energy(const Configuration& at, std::span<const double> tet_volume);
 
-// Gravity, the loads and obstacles at state.time, and the grabs on the free nodes [N], 0 on the
-// others.
+// The forces of gravity, of the loads and obstacles at state.time, and of the grabs on the free
+// nodes [N]; 0 on the others.
 std::vector<Vec3> outer_forces(const Model& model, const Controls& controls, const State& state);
 
 struct Energies {
-  double kinetic = 0.0;     // [J] of the nodes that are free to move, with the talk's velocity
+  double kinetic = 0.0;     // [J] of the free nodes, with synchronous_velocity()
   double elastic = 0.0;     // [J] in springs, network and volume
   double gravity = 0.0;     // [J] of the free nodes, 0 at their rest positions
   double contact = 0.0;     // [J] between bodies and obstacles or grabs
   double dissipated = 0.0;  // [J] since the start
   double work_in = 0.0;     // [J] since the start
-  // What the account leaves unexplained: kinetic + elastic + gravity + contact + dissipated -
-  // work_in is constant up to the step's error.
+  // The energy account: kinetic + elastic + gravity + contact + dissipated - work_in is constant up
+  // to the step's error.
   double total() const { return kinetic + elastic + gravity + contact + dissipated - work_in; }
 };
 // `force`: of all terms at the state [N] (nodes).
 Energies measure_energies(const Model& model, const Controls& controls, const State& state,
                           const std::vector<Vec3>& force);
 
-// Current volume of the body's tets over their rest volume [-].
+// Current volume of the body's tets divided by their rest volume [-].
 double volume_ratio(const Model& model, const Body& body, const std::vector<Vec3>& x);
 
 }  // namespace sinew

@@ -1,12 +1,12 @@
-// Ties: a node n keeps its place in a tet of another body, whose corners c have the barycentric
-// coordinates b_c there at rest. With the weights w = 1 for the node and -b_c for the corners,
+// Ties: a node n keeps its place in a tet of another body. Its barycentric coordinates there at
+// rest are b_c for the corners c. With the weights w = 1 for the node and -b_c for the corners,
 //
 //   r = sum_a w_a x_a,   W = k/2 |r|^2,   force on a: -k w_a r,   second derivative k w_a w_b 1
 //
-// The weights sum to zero and r is zero at rest, wherever the bodies go and however they turn: ties
-// keep momentum and angular momentum, and pull at nothing that has only moved. A place outside of
-// the tet, some way off its surface, has a coordinate less than zero; nothing changes by that.
-// W is that of springs of rest length zero, sum over pairs of -k w_a w_b/2 |x_a - x_b|^2.
+// The weights sum to zero and r is zero at rest and after any rigid motion of the bodies: ties
+// conserve momentum and angular momentum, and a rigid motion causes no force. A place outside the
+// tet, at some distance from its surface, has a negative coordinate; the formulas stay the same. W
+// is the energy of springs of rest length zero, sum over pairs of -k w_a w_b/2 |x_a - x_b|^2.
 // docs/methods/ties.md.
 #pragma once
 
@@ -45,7 +45,7 @@ struct TieTerm {
   }
 };
 
-// Ties a node to where it is in the tet of other nodes, at rest. stiffness [N/m] > 0.
+// Ties a node to its rest place in the tet of other nodes. stiffness [N/m] > 0.
 void add_tie(Model& model, Index node, const Tet& tet, double stiffness);
 
 }  // namespace sinew

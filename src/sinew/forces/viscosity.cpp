@@ -88,8 +88,8 @@ void finish_viscosity(Model& model) {
 
 namespace {
 
-// F and dF/dt of a cell, sum_a (x_a - x_0) g_a^T and the same of v: since sum_a g_a = 0, the same
-// as with x_a, and more exact far from the origin.
+// F and dF/dt of a cell: sum_a (x_a - x_0) g_a^T and the same for v. Since sum_a g_a = 0, x_a gives
+// the same sum, but x_a - x_0 is more accurate far from the origin.
 struct CellGradient {
   Mat3 F = Mat3::Zero();
   Mat3 F_rate = Mat3::Zero();
@@ -145,7 +145,7 @@ Mat3 viscous_deformation(const Model& model, std::span<const Vec3> x, Index cell
   return cell_gradient(model, x, x, uz(cell)).F;
 }
 
-// |dE/dt| <= |F| sum_a |g_a| |v_a|, so that the blocks of C are at most 2 eta V |F|^2 |g_a| |g_b|.
+// dE/dt| <= |F| sum_a |g_a| |v_a|, so the blocks of C are at most 2 eta V |F|^2 |g_a| |g_b|.
 std::vector<double> viscous_row_sums(const Model& model, std::span<const Vec3> x) {
   std::vector<double> sums(x.size(), 0.0);
   for (std::size_t cell = 0; cell < model.viscous_weight.size(); ++cell) {

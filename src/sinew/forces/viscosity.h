@@ -1,10 +1,10 @@
-// Viscosity of the material: Kelvin-Voigt's dashpot beside the elastic spring, which means the same
-// on every mesh. docs/methods/viscosity.md.
+// Viscosity of the material: a Kelvin-Voigt dashpot parallel to the elastic spring, with the same
+// effect on every mesh. docs/methods/viscosity.md.
 //
-// It acts on the cells in which the network law sees shear, the tets around each edge
-// (edge_cells.h), or each tet by itself where beta is 1. So every swing that keeps the volume is
-// damped in proportion to its elastic energy. On tets alone, which lock, a bar of 3 cells would be
-// damped 40 % too strongly in torsion.
+// It acts on the cells of the network law's shear energy, the tets around each edge (edge_cells.h),
+// or on each tet separately if beta is 1. So every oscillation that keeps the volume is damped in
+// proportion to its elastic energy. On single tets, which lock, a bar of 3 cells would be damped
+// 40 % too strongly in torsion.
 #pragma once
 
 #include <span>
@@ -15,13 +15,13 @@
 
 namespace sinew {
 
-// Shear viscosity eta [Pa s] of a material in a body whose longest side is `length` [m]: its own,
-// and under Damping::material that which gives the standing shear wave of half a wave along that
-// side the damping ratio zeta,
+// Shear viscosity eta [Pa s] of a material in a body whose longest side is `length` [m]: its own
+// viscosity, plus under Damping::material the one that gives a standing shear wave (half a wave
+// along that side) the damping ratio zeta,
 //   eta = 2 zeta mu / omega_0,   omega_0 = (pi / length) sqrt(mu / rho).
 double material_viscosity(const Material& material, double length);
 
-// Longest side [m] of the box around the nodes along the axes that `rotation` turns x, y and z to.
+// Longest side [m] of the box around the nodes, along the axes x, y and z rotated by `rotation`.
 double longest_side(std::span<const Vec3> nodes, const Eigen::Quaterniond& rotation);
 
 struct ViscousStress {
@@ -34,9 +34,9 @@ struct ViscousStress {
 //   dE/dt = sym(F^T dF/dt),   P = 2 eta F dE/dt,   D = eta V |dE/dt|^2,
 //   force on node a = -dD/dv_a = -V P g_a
 //
-// F = sum_a x_a g_a^T and dF/dt = sum_a v_a g_a^T with the cell's gradients g_a. A rigid motion has
-// no dE/dt; P F^T is symmetric, so that no torque is left; nothing is singular where the cell is
-// flat or inside out. weight: eta V [Pa s m3].
+// F = sum_a x_a g_a^T and dF/dt = sum_a v_a g_a^T with the cell's gradients g_a. For a rigid motion
+// dE/dt is 0. P F^T is symmetric, so there is no net torque. Nothing is singular in a flat or
+// inverted cell. weight: eta V [Pa s m3].
 inline ViscousStress viscous_stress(const Mat3& F, const Mat3& F_rate, double weight) {
   const Mat3 turning = F.transpose() * F_rate;
   const Mat3 rate = 0.5 * (turning + turning.transpose());
@@ -48,8 +48,8 @@ inline Mat3 viscous_block(const Mat3& F, const Vec3& g_a, const Vec3& g_b, doubl
   return weight * (g_a.dot(g_b) * (F * F.transpose()) + (F * g_b) * (F * g_a).transpose());
 }
 
-// Appends tet_viscosity and the cells of a body, the model's last one; nothing where no material
-// so far is viscous. Nodes of the mesh are the model's from first_node on. tet_region: (tets) or
+// Appends tet_viscosity and the cells of a body, the model's last one; nothing if no material so
+// far is viscous. The mesh's nodes are the model's nodes from first_node on. tet_region: (tets) or
 // empty; length: longest side of the body [m].
 void add_viscosity(Model& model, const TetMesh& mesh, const std::vector<Material>& materials,
                    std::span<const int> tet_region, Index first_node, double length);
@@ -57,22 +57,22 @@ void add_viscosity(Model& model, const TetMesh& mesh, const std::vector<Material
 // Derives the list node -> cells; called once, by finish().
 void finish_viscosity(Model& model);
 
-// Sets `force`, what the viscosity pulls each node of each cell with [N] (slots), from positions x
-// and velocities v. Returns the power [W] that it turns into heat.
+// Sets `force`, the viscous force on each node of each cell [N] (slots), from positions x and
+// velocities v. Returns the power [W] that viscosity turns into heat.
 double compute_viscous_forces(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v,
                               std::vector<Vec3>& force);
 
-// That power alone, v . C v [W].
+// Only that power, v . C v [W].
 double viscous_power(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v);
 
 // F of a cell at positions x [-].
 Mat3 viscous_deformation(const Model& model, std::span<const Vec3> x, Index cell);
 
-// For every node an upper bound of the sum of |C_ij| over its row [N s/m] (nodes).
+// An upper bound of the row sum of |C_ij| for every node [N s/m] (nodes).
 std::vector<double> viscous_row_sums(const Model& model, std::span<const Vec3> x);
 
-// Sum, for a node in the fixed order of its cells, of the forces on the cells' nodes (slots). For
-// models with viscosity only.
+// The sum of the viscous forces on a node over its cells, in their fixed order (slots). Only for
+// models with viscosity.
 inline Vec3 gather_viscous(const Model& model, const std::vector<Vec3>& force, Index node) {
   Vec3 sum = Vec3::Zero();
   const auto n = uz(node);

@@ -11,7 +11,7 @@
 namespace sinew {
 namespace {
 
-// mu of the guard [Pa]: none where the tet keeps its own volume.
+// mu of the guard [Pa]: 0 if the tet keeps its own volume.
 double guard_modulus(const Model& model, std::size_t t) {
   return model.tet_bulk[t] > 0.0 ? 0.0 : model.tet_modulus[t];
 }
@@ -45,7 +45,7 @@ inline void set_geometry(const Model& model, std::span<const Vec3> x, std::size_
   gradient = g;
 }
 
-// Leaves the arrays empty where the model has no volume terms.
+// Leaves the arrays empty if the model has no volume terms.
 void fill_tet_volumes(const Model& model, std::span<const Vec3> x, TetVolumes& tets) {
   if (!model.has_volume) return;
   tets.volume.resize(model.tets.size());
@@ -76,7 +76,7 @@ void fill_tet_pressures(const Model& model, std::span<const double> volume,
   });
 }
 
-// What u changes every tet's volume by, to first order.
+// The change of every tet's volume due to u, to first order.
 void fill_tet_rates(const Model& model, const TetVolumes& tets, std::span<const Vec3> u,
                     std::vector<double>& rates) {
   rates.resize(model.tets.size());
@@ -88,14 +88,14 @@ void fill_tet_rates(const Model& model, const TetVolumes& tets, std::span<const 
   });
 }
 
-// Whether this volume makes the tet a LowTet; also where it is no number.
+// Whether a tet of this volume is a LowTet; also if the volume is not a number.
 bool is_low(const Model& model, std::size_t t, double volume) {
   return !(volume >= low_ratio * model.rest_volume[t]);
 }
 
-// Gives every node cell its share of its tets: in proportion to the cell's volume when each tet is
-// cut in equal quarters. Equal quarters make cells of one tet at corners of the mesh, which lock as
-// tets do; with these shares the larger neighbours take over.
+// Sets the share of every node cell in its tets, in proportion to the cell's volume with equal
+// quarters. Equal quarters would make cells of one tet at corners of the mesh, which lock like
+// tets. With these shares the larger neighbours get most of such a tet.
 void share_tets_among_cells(Model& model, const Body& body) {
   const std::vector<double> quarters = quarter_volumes_of_cells(model, body.tets);
   for (auto t = uz(body.tets.begin); t < uz(body.tets.end); ++t) {
@@ -304,7 +304,7 @@ double tet_volume_stiffness(const Model& model, std::size_t tet, double volume) 
   return model.tet_bulk[tet] + guard_stiffness(ratio, guard_modulus(model, tet));
 }
 
-// First the rate of every volume, then that of the pressures, then that of the forces.
+// First the changes of the volumes, then of the pressures, then of the forces.
 std::span<const Vec3> VolumeForceChange::compute(const Model& model, std::span<const Vec3> x,
                                                  const TetState& tets, double a,
                                                  std::span<const Vec3> u) {

@@ -1,4 +1,5 @@
-// Volume terms: what keeps the volume of tets and node cells, and the push of the network law.
+// Volume terms: the energies that keep the volume of tets and node cells, and the pressure of the
+// network law.
 //
 //   W(x) = sum_t [ -mu_t (v_t - V_t) + V_t kappa_t/2 (v_t/V_t - 1)^2 + guard ]
 //        + sum_c V_c kappa_c/2 (J_c - 1)^2,   J_c = (sum of its shares of v_t) / V_c
@@ -21,28 +22,28 @@ namespace sinew {
 // node cells, split by region.
 void add_volume_terms(Model& model, const Body& body, const std::vector<Material>& materials);
 
-// The volume of every node cell [m3] when each of the tets is cut in equal quarters: a tet's shares
-// in the cells of its corners (Model::cell_share) are in proportion to it.
+// The volume of every node cell [m3] if each tet is divided into equal quarters. The shares of a
+// tet in the cells of its corners (Model::cell_share) are proportional to it.
 std::vector<double> quarter_volumes_of_cells(const Model& model, Range tets);
 
 // Derives the lists cell -> tets and node -> tets; called once, by finish().
 void finish_volume_terms(Model& model);
 
-// Volume and its gradient of every tet at some positions; empty where the model has no volume
+// The volume of every tet and its gradient at given positions; empty if the model has no volume
 // terms.
 struct TetVolumes {
   std::vector<double> volume;     // v_t [m3] (tets)
   std::vector<Corners> gradient;  // dv_t/dx of the corners [m2] (tets)
 };
 
-// The same with the pressures: all that the forces of the volume terms and their tangent take.
+// The same with the pressures: all that the forces of the volume terms and their tangent need.
 struct TetState : TetVolumes {
   std::vector<double> pressure;       // s_t [Pa] (tets)
   std::vector<double> cell_pressure;  // kappa_c (J_c - 1) [Pa] (cells)
 };
 
-// These are functions of x alone. The arrays of `reuse` become those of the result, so that a
-// caller that gives back the last result allocates nothing.
+// The results depend on x only. The arrays of `reuse` become those of the result, so a caller that
+// passes in the last result allocates nothing.
 TetVolumes compute_tet_volumes(const Model& model, std::span<const Vec3> x, TetVolumes reuse = {});
 TetState compute_tet_state(const Model& model, std::span<const Vec3> x, TetState reuse = {});
 // Only v_t [m3] (tets), to the same bits.
@@ -51,15 +52,15 @@ std::vector<double> volumes_of_tets(const Model& model, std::span<const Vec3> x,
 // Only s_t [Pa] (tets).
 std::vector<double> pressures_of_tets(const Model& model, std::span<const Vec3> x);
 
-// A tet that has lost half of its volume or more: one that the guard pushes or may push within a
-// step, or that is inside out.
+// A tet that has lost half of its volume or more: the guard acts on it or may act within a step, or
+// it is inverted.
 struct LowTet {
   Index tet = -1;
   double volume = 0.0;  // [m3]
   Corners gradient;     // [m2]
 };
 LowTet low_tet_at(const Model& model, std::span<const Vec3> x, Index tet);
-// All of them, by id: those of `tets`, to `low`, or those at positions x.
+// All low tets, by id: those of `tets`, written to `low`, or those at positions x.
 void find_low_tets(const Model& model, const TetVolumes& tets, std::vector<LowTet>& low);
 std::vector<LowTet> find_low_tets(const Model& model, std::span<const Vec3> x);
 
@@ -80,17 +81,17 @@ inline Vec3 push_of_tets(const Model& model, const TetState& tets, Index node) {
   return -press_tets(model, tets.gradient, tets.pressure, node);
 }
 
-// Pressure of every tet [Pa] (tets), > 0 where it is squeezed: minus the mean Kirchhoff stress,
+// Pressure of every tet [Pa] (tets), > 0 under compression: minus the mean Kirchhoff stress,
 //   p = -(mu |F|^2 / 3 + s v/V),   F the tet's deformation gradient,
-// which at small strains is -K (v/V - 1) with the bulk modulus K. Of classic springs only what
-// their volume energy does; empty where the model has no volume terms.
+// which at small strains is -K (v/V - 1) with the bulk modulus K. For classic springs it is only
+// the pressure of their volume energy. Empty if the model has no volume terms.
 std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x);
 
 // W [J] of tets with these volumes [m3] (tets): zero at rest.
 double volume_energy(const Model& model, std::span<const double> volume);
 
-// What a displacement u changes the corner forces by, to first order and with the sign of a force:
-// -a H u [N] (4 a tet). Keeps its arrays from call to call.
+// The change of the corner forces due to a displacement u, to first order and with the sign of a
+// force: -a H u [N] (4 per tet). Keeps its arrays between calls.
 class VolumeForceChange {
  public:
   std::span<const Vec3> compute(const Model& model, std::span<const Vec3> x, const TetState& tets,
@@ -102,7 +103,7 @@ class VolumeForceChange {
   std::vector<Vec3> force_;
 };
 
-// Sum, for a node in the fixed order of its tets, of forces on the corners (4 a tet).
+// The sum of corner forces (4 per tet) on a node over its tets, in their fixed order.
 inline Vec3 gather_tets(const Model& model, std::span<const Vec3> corner_force, Index node) {
   Vec3 sum = Vec3::Zero();
   const auto n = uz(node);
@@ -112,9 +113,10 @@ inline Vec3 gather_tets(const Model& model, std::span<const Vec3> corner_force, 
   return sum;
 }
 
-// --- the pieces of a projection on the cells' volumes (volume_limit.h) ---
+// --- functions for the projection on the cells' volumes (volume_limit.h) ---
 
-// Sum over the cell's tets of its share of a value of each (tets): its volume, for theirs.
+// The sum over the cell's tets of its share times a value per tet (tets); for tet volumes the
+// volume of the cell.
 inline double sum_of_cell(const Model& model, std::size_t cell, std::span<const double> of_tet) {
   double sum = 0.0;
   for (Index k = model.cell_start[cell]; k < model.cell_start[cell + 1]; ++k) {
@@ -122,23 +124,23 @@ inline double sum_of_cell(const Model& model, std::size_t cell, std::span<const 
   }
   return sum;
 }
-// What u changes the cells' volumes by, to first order [m3] (cells). tet_rate: the same of the
+// The change of the cells' volumes due to u, to first order [m3] (cells). tet_rate: that of the
 // tets.
 void rate_cells(const Model& model, const TetVolumes& tets, std::span<const Vec3> u,
                 std::vector<double>& tet_rate, std::span<double> rate);
 // Sets the `pressure` (tets) with which press_tets() gives the gradient of sum_c weight_c V_c(x).
 void press_cells(const Model& model, std::span<const double> weight, std::vector<double>& pressure);
 
-// V d2W/dv2 of a tet's own energies, its volume's and the guard's [Pa], at this volume [m3].
+// V d2W/dv2 of a tet's own energies (volume and guard) [Pa], at this volume [m3].
 double tet_volume_stiffness(const Model& model, std::size_t tet, double volume);
 
 // Square of the highest angular frequency [1/s2] that the guard adds: the largest g/V sum_a
-// |dv/dx_a|^2 / m_a over the tets that it acts on, or that are about to come under it (0 where
-// there is none). The guard sets in too fast for the explicit stepper to wait until the stable step
-// is looked at.
+// |dv/dx_a|^2 / m_a over the tets that the guard acts on or may act on within a step (0 if there
+// are none). The guard stiffens too fast for the explicit stepper to wait for the next check of the
+// stable step.
 double guard_frequency2(const Model& model, std::span<const LowTet> low);
 
-// Largest |J_c - 1| over the node cells [-]; 0 where there are none.
+// Largest |J_c - 1| over the node cells [-]; 0 if there are none.
 double largest_cell_change(const Model& model, std::span<const Vec3> x);
 
 }  // namespace sinew

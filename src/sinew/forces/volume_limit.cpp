@@ -15,7 +15,7 @@ double dot(const CellField& a, const CellField& b) {
   return parallel_sum(static_cast<Index>(a.size()), [&](Index i) { return a[uz(i)] * b[uz(i)]; });
 }
 
-// V_c(x) - V_c of the limited cells [m3]; returns the largest |J_c - 1| minus its limit.
+// measure() sets c to V_c(x) - V_c of the limited cells [m3].
 struct Violation {
   double change = 0.0;  // largest |J_c - 1|
   bool met = true;
@@ -37,7 +37,7 @@ Violation measure(const Model& model, const TetVolumes& tets, CellField& c) {
   return v;
 }
 
-// u = W G^T lambda on the nodes; of_tets is scratch (tets), here and below.
+// u = W G^T lambda on the nodes; of_tets is scratch (tets) here and in rates().
 void spread(const Model& model, const TetVolumes& tets, const CellField& lambda,
             std::vector<double>& of_tets, std::vector<Vec3>& u) {
   press_cells(model, lambda, of_tets);
@@ -74,7 +74,7 @@ CellField measure_diagonal(const Model& model, const TetVolumes& tets) {
   return diagonal;
 }
 
-// What the linear solve leaves is well within every limit.
+// Whether the residual of the linear solve is well within every limit.
 bool is_small(const Model& model, const CellField& r) {
   for (std::size_t i = 0; i < r.size(); ++i) {
     if (std::abs(r[i]) > 0.2 * model.volume_limit[i] * model.cell_volume[i]) return false;

@@ -1,5 +1,5 @@
-// The identity of a contact: what touches what. It stays the same from step to step, so a contact
-// can start from its force of the step before (warm start).
+// The identity of a contact: which features touch. It stays the same from step to step, so a
+// contact can start from its force of the step before (warm start).
 #pragma once
 
 #include <compare>
@@ -9,7 +9,7 @@
 
 namespace sinew {
 
-// What touches, and what is touched. In the order in which the contact solver takes them.
+// The kind of the two features that touch, in the order in which the contact solver visits them.
 enum class ContactKind : std::int32_t {
   node_shape,     // feature: a node; partner: -1. Owner: an obstacle with a shape
   edge_rod,       // feature: an edge of the skin; partner: a rod of the owner, an obstacle
@@ -22,22 +22,22 @@ enum class ContactKind : std::int32_t {
 
 struct ContactId {
   ContactKind kind = ContactKind::node_shape;
-  Index owner = -1;    // what is touched: index of an obstacle or a body, as the kind says
-  Index feature = -1;  // what touches it
-  Index partner = -1;  // which part of the owner is touched
+  Index owner = -1;    // the touched obstacle or body: its index, according to the kind
+  Index feature = -1;  // the feature that touches the owner
+  Index partner = -1;  // the part of the owner that is touched
 
   auto operator<=>(const ContactId&) const = default;
 
-  // Whether the same feature touches the same owner, maybe another part of it: a node that has
-  // gone on to the next triangle.
+  // Whether the same feature touches the same owner, possibly at another part: for example a node
+  // that has moved on to the next triangle.
   bool same_feature(const ContactId& other) const {
     return kind == other.kind && owner == other.owner && feature == other.feature;
   }
 
-  // Whether an obstacle with a shape is touched, not a mesh or a body.
+  // Whether an obstacle with a shape is touched, rather than a mesh or a body.
   bool with_shape() const { return kind < ContactKind::node_mesh; }
 
-  // The obstacle that is touched, index into Model::obstacles; -1: a body is.
+  // The touched obstacle, index into Model::obstacles; -1: a body is touched.
   Index obstacle() const {
     switch (kind) {
       case ContactKind::node_shape:

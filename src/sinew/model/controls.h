@@ -9,12 +9,12 @@
 
 namespace sinew {
 
-// Springs of rest length zero that pull nodes to points, such as a hand that holds a patch of
+// Springs of rest length zero that pull nodes to points, for example a hand that holds a patch of
 // tissue (forces/grabs.h).
 struct Grab {
   std::vector<Index> nodes;
   std::vector<double> stiffness;  // [N/m] >= 0 (nodes)
-  std::vector<Vec3> offset;       // of each node's target from `target` [m] (nodes)
+  std::vector<Vec3> offset;       // of each node's target, relative to `target` [m] (nodes)
   Vec3 target = Vec3::Zero();     // [m]
 };
 
@@ -23,7 +23,7 @@ struct Controls {
   std::vector<Grab> grabs;
 };
 
-// The Model's gravity and nothing grabbed.
+// The Model's gravity and no grabs.
 inline Controls initial_controls(const Model& model) {
   return {model.start_gravity, {}};
 }

@@ -1,38 +1,39 @@
-// What a region of tissue is made of and how its springs come from it.
+// The material of a tissue region and the law of its springs.
 #pragma once
 
 #include <limits>
 
 namespace sinew {
 
-// How springs get their constants (docs/methods/springs.md).
+// The laws that give springs their constants (docs/methods/springs.md).
 enum class Law {
   uniform,    // the same k and c for every spring
   lloyd,      // Lloyd, Szekely, Harders 2007: from Young's modulus
   vangelder,  // Van Gelder 1998: from Young's modulus
-  // From here on the material decides all of the behaviour:
+  // From here on the material constants determine the whole behaviour:
   neo_hookean,  // constant springs of rest length zero and volume (docs/methods/neo-hookean.md)
   calibrated,   // vangelder's springs and node volume, scaled to match E and nu on this mesh
 };
 
 // The cells whose volume an energy keeps (docs/methods/volume.md).
 enum class Volume {
-  by_law,  // node for neo-hookean and calibrated, none for the others
+  by_law,  // node for neo-hookean and calibrated, tet for neo-hookean with nu < 0, none for the
+           // others
   none,    // no volume is kept
   tet,     // every tet's
-  node,    // every node's share of its tets, split by region
+  node,    // every node's share of its tets, separately for each region
 };
 
-// Which length enters Lloyd's formula.
+// The length in Lloyd's formula.
 enum class LloydLength {
   tet,   // edge of the regular tet of the tet's volume, (6 sqrt(2) V)^(1/3)
   edge,  // the edge's own rest length
 };
 
-// How the laws with a Young's modulus damp.
+// The damping of the laws with a Young's modulus.
 enum class Damping {
   ratio,      // c = 2 zeta sqrt(k m_red), zeta = damping_ratio
-  published,  // d = 2 sqrt(k (m_i + m_j)) / l0, the number of the paper, whatever its unit
+  published,  // d = 2 sqrt(k (m_i + m_j)) / l0, the number of the paper regardless of its unit
   material,   // none: the material's viscosity instead (forces/viscosity.h)
 };
 
@@ -47,17 +48,17 @@ struct Material {
   double spring_damping = 3e3;    // [N s/m] >= 0; uniform
   LloydLength length = LloydLength::tet;
   Damping damping = Damping::ratio;
-  double damping_ratio = 0.1;        // [-] >= 0; damping = ratio, material
-  double viscosity = 0.0;            // [Pa s] >= 0 in shear, beside what damping gives; all laws
-  double drag = 0.0;                 // [1/s] >= 0; force -drag m v on every node
+  double damping_ratio = 0.1;  // [-] >= 0; damping = ratio, material
+  double viscosity = 0.0;      // [Pa s] >= 0 in shear, in addition to that of damping; all laws
+  double drag = 0.0;           // [1/s] >= 0; force -drag m v on every node
   double stretch_limit = no_limit;   // tau_s [-] > 0: |x_ij| <= (1 + tau_s) l0
   double compress_limit = no_limit;  // tau_c [-] in (0, 1]: |x_ij| >= (1 - tau_c) l0
   double beta = -1.0;                // [-] in [0, 1]; neo-hookean: share of the tets' own
                                      // gradients; negative: from poisson
   Volume volume = Volume::by_law;
   double volume_stiffness = -1.0;  // kappa [Pa] of the cells; negative: from young and poisson
-  double volume_limit = no_limit;  // [-] > 0: most |J - 1| of a node cell after a step
-  double spring_scale = 1.0;       // [-] > 0 on the stiffness of lloyd's, vangelder's springs
+  double volume_limit = no_limit;  // [-] > 0: largest |J - 1| of a node cell after a step
+  double spring_scale = 1.0;  // [-] > 0, factor on the stiffness of lloyd's and vangelder's springs
 };
 
 // Lame's constants: mu = E / (2 (1 + nu)), lambda = E nu / ((1 + nu)(1 - 2 nu)) [Pa].
@@ -68,25 +69,26 @@ inline double lame_lambda(double young, double poisson) {
   return young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
 }
 
-// The volume cells that the material's law means by `by_law`.
+// The volume cells of a material, with `by_law` resolved.
 inline Volume volume_cells(const Material& m) {
   if (m.volume != Volume::by_law) return m.volume;
   if (m.law == Law::neo_hookean && m.poisson < 0.0) return Volume::tet;
   return m.law == Law::neo_hookean || m.law == Law::calibrated ? Volume::node : Volume::none;
 }
 
-// The share of the tets' own gradients in the network. Smoothed gradients alone do not see modes
-// that bend every edge's tets against each other; volume holds those, and the less of it there is
-// (small nu) the more of the tets' own is needed: measured on 400 meshes with slivers,
-// docs/methods/ neo-hookean.md. Below nu = 0 nothing locks and the law is the plain linear tet.
+// The share of the tets' own gradients in the network. Smoothed gradients alone do not resist modes
+// that bend the tets around every edge against each other. The volume energy resists them; the
+// weaker it is (small nu), the more of the tets' own gradients is needed: measured on 400 meshes
+// with slivers, docs/methods/neo-hookean.md. Below nu = 0 nothing locks and the law is the plain
+// linear tet.
 inline double network_beta(const Material& m) {
   if (m.beta >= 0.0) return m.beta;
   if (m.poisson < 0.0) return 1.0;
   return m.poisson < 0.2 ? 0.1 - 0.4 * m.poisson : 0.02;
 }
 
-// kappa [Pa] of the volume energy. The network law needs lambda + mu (Smith, de Goes, Kim 2018); an
-// isotropic network of classic springs brings lambda = mu of its own, and lacks lambda - mu.
+// kappa [Pa] of the volume energy. The network law needs lambda + mu (Smith, de Goes, Kim 2018). An
+// isotropic network of classic springs has lambda = mu by itself and needs lambda - mu.
 inline double volume_stiffness(const Material& m) {
   if (m.volume_stiffness >= 0.0) return m.volume_stiffness;
   const double mu = shear_modulus(m.young, m.poisson);

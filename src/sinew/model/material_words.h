@@ -1,4 +1,4 @@
-// The words that scenes have for the choices of a material.
+// The names of a material's options in scenes.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// Rigid things that bodies may not enter, and where they are at a time. docs/methods/obstacles.md.
+// Rigid obstacles, and their poses at a time. docs/methods/obstacles.md.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 namespace sinew {
 
 // Without a stiffness an obstacle is hard: contact with friction (contact/colliders.h, and
-// contact/surfaces.h for meshes). With one it is a frictionless sphere that presses
-// (forces/obstacles.h).
+// contact/surfaces.h for meshes). With a stiffness it is a frictionless sphere that presses on
+// bodies (forces/obstacles.h).
 struct Obstacle {
   std::string name;
   Vec3 center = Vec3::Zero();  // [m], before its path moves it
@@ -21,7 +21,7 @@ struct Obstacle {
   Mat3 rotation = Mat3::Identity();  // its own axes in the world, as columns, before the path
   double friction = 0.5;             // [-] Coulomb's mu >= 0; hard
   double restitution = 0.0;          // [-] in [0, 1], of explicit steps; hard
-  bool listed = true;  // has a place in tables, readings and the host's handles; false: the ground
+  bool listed = true;  // appears in tables, readings and the host's handles; false: the ground
 
   bool hard() const { return stiffness == 0.0; }
   // The radius of a sphere, the only shape that can be soft [m]; 0 for other shapes.
@@ -29,13 +29,13 @@ struct Obstacle {
     const auto* sphere = std::get_if<shapes::Sphere>(&shape);
     return sphere != nullptr ? sphere->radius : 0.0;
   }
-  // Null for an obstacle that is no mesh.
+  // The mesh; null for other shapes.
   const shapes::Mesh* mesh() const { return std::get_if<shapes::Mesh>(&shape); }
   // The nodes of a mesh; empty for other shapes.
   Range nodes() const { return mesh() != nullptr ? mesh()->nodes : Range{0, 0}; }
 };
 
-// Where a rigid thing is: the point q of its own frame is at center + turn q.
+// The pose of a rigid object: the point q of its own frame is at center + turn q.
 struct Pose {
   Vec3 center = Vec3::Zero();    // [m]
   Mat3 turn = Mat3::Identity();  // its own axes in the world, as columns
@@ -47,8 +47,9 @@ struct Pose {
 // The obstacle's pose at a time [s].
 Pose obstacle_pose(const Obstacle& obstacle, double time);
 
-// The hard half-space below `point` [m] with a unit normal that points to the free side: the
-// `[ground]` of a scene. Its name has a space, so no obstacle of a scene can have the same.
+// The hard half-space below `point` [m], with a unit normal that points to the free side: the
+// `[ground]` of a scene. Its name contains a space, so no obstacle of a scene can have the same
+// name.
 Obstacle make_ground(const Vec3& point, const Vec3& normal, double restitution, double friction);
 
 }  // namespace sinew

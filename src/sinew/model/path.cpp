@@ -17,7 +17,7 @@ KeyFrame Path::frame(double t) const {
   if (smooth) s = s * s * (3.0 - 2.0 * s);
   now.move = (1.0 - s) * from.move + s * after->move;
   now.turn = (1.0 - s) * from.turn + s * after->turn;
-  now.deform = from.deform + s * (after->deform - from.deform);  // exact where both are equal
+  now.deform = from.deform + s * (after->deform - from.deform);  // exact if both are equal
   return now;
 }
 

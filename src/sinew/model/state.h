@@ -1,4 +1,4 @@
-// What changes during a run. With the Model's hash it is all that a checkpoint holds.
+// The data that change during a run. A checkpoint holds them and the Model's hash.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,12 @@ struct EnergyAccount {
   double work_in = 0.0;     // by moving pins and loads
 };
 
-// What a contact pushes with (contact/contact.h says more of what stands here).
+// The force of a contact (contact/contact.h describes weights and nodes).
 struct ContactPush {
   ContactId id;
-  std::array<Index, 4> node = {-1, -1, -1, -1};  // those used first
+  std::array<Index, 4> node = {-1, -1, -1, -1};  // the first count() are used
   std::array<double, 4> weight = {};             // of the nodes [-]
-  Vec3 push = Vec3::Zero();  // on the place [N]: at the end of an implicit step, mean over Verlet's
+  Vec3 push = Vec3::Zero();  // [N]: at the end of an implicit step, mean over a Verlet step
 
   std::size_t count() const {  // nodes used
     return static_cast<std::size_t>(std::find(node.begin(), node.end(), -1) - node.begin());
@@ -33,32 +33,32 @@ static_assert(sizeof(ContactPush) == sizeof(ContactId) + 4 * sizeof(Index) + 7 *
                   sizeof(ContactId) == 4 * sizeof(Index),
               "no gaps: checkpoints hold its bytes");
 
-// What contacts, the ground's among them, and limits push with at the end of the last step, where
-// the next one starts; empty before the first. Verlet's steps know contacts only
+// The forces of contacts (also with the ground) and of limits at the end of the last step, from
+// which the next step starts; empty before the first. Verlet's steps use the contacts only
 // (solver/constraints.h, contact/contact_solver.h).
 struct Reactions {
-  std::vector<double> tension;   // of each limited spring [N] (as Model::limited), < 0: it pushes
-  std::vector<double> pressure;  // on the volume of each limited cell [Pa] (cells), > 0: inwards
-  std::vector<ContactPush> contacts;  // those that push, by id
+  std::vector<double> tension;   // of each limited spring [N] (as Model::limited), < 0: compression
+  std::vector<double> pressure;  // of each limited cell [Pa] (cells), > 0: inwards
+  std::vector<ContactPush> contacts;  // those with a force, by id
 };
 
 struct State {
   std::vector<Vec3> position;  // x(t) [m] (nodes)
   std::vector<Vec3>
       half_velocity;       // w = (x(t) - x(t - h)) / h [m/s] (nodes): Verlet's own velocity
-  double last_step = 0.0;  // the h that half_velocity belongs to [s]; 0 before step one
+  double last_step = 0.0;  // the length of the step of half_velocity [s]; 0 before step one
   double time = 0.0;       // [s]
   std::int64_t step = 0;   // steps taken
   EnergyAccount energy;
   Reactions reactions;
-  // What bodies push the hard obstacles with, mean over the last step [N] (obstacles).
+  // The forces of bodies on the hard obstacles, mean over the last step [N] (obstacles).
   std::vector<Vec3> obstacle_force;
 
   // Positions, velocities, time and step: equal runs have equal hashes at any thread count.
   std::uint64_t hash() const;
 };
 
-// Every node at its start position with its start velocity, pins where their paths begin.
+// Every node at its start position with its start velocity, pins at the start of their paths.
 State initial_state(const Model& model);
 
 }  // namespace sinew

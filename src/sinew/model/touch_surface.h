@@ -9,22 +9,22 @@
 
 namespace sinew {
 
-// Nodes and triangles lie owner by owner. An owner is a body (its index) or, from bodies.size() on,
-// a rigid mesh. Lengths are of the rest shape.
+// Nodes and triangles are stored owner by owner. An owner is a body (its index) or, from
+// bodies.size() on, a rigid mesh. Lengths are those of the rest shape.
 struct TouchSurface {
-  std::vector<Index> nodes;           // node ids, rising (nodes)
+  std::vector<Index> nodes;           // node ids, ascending (nodes)
   std::vector<double> node_size;      // mean size of the triangles around it [m] (nodes)
   std::vector<Index> ring_start;      // offsets into ring (nodes + 1)
-  std::vector<Index> ring;            // triangles around the node, rising
+  std::vector<Index> ring;            // triangles around the node, ascending
   std::vector<Triangle> triangles;    // node ids, counter-clockwise from outside (triangles)
-  std::vector<double> triangle_size;  // mean edge, or the height of the tet behind it where that is
-                                      // less [m] (triangles)
+  std::vector<double> triangle_size;  // the smaller of the mean edge and the height of the tet
+                                      // behind it [m] (triangles)
   std::vector<Edge> edges;            // node ids (edges), owner by owner
-  std::vector<std::array<Index, 2>> edge_triangles;  // on both sides (edges); second -1: none
-                                                     // there; -2: more than one
-  std::vector<double> edge_bend;       // [rad] (edges) between the triangles' normals: > 0 convex,
-                                       // 0 where there are not two triangles
-  std::vector<Range> owner_nodes;      // ranges of `nodes` (owners)
+  std::vector<std::array<Index, 2>> edge_triangles;  // on both sides (edges); second -1: none;
+                                                     // -2: more than one
+  std::vector<double> edge_bend;   // [rad] (edges) between the triangles' normals: > 0 convex, 0
+                                   // without exactly two triangles
+  std::vector<Range> owner_nodes;  // ranges of `nodes` (owners)
   std::vector<Range> owner_triangles;  // of `triangles` (owners)
   std::vector<Range> owner_edges;      // of `edges` (owners)
   Index body_count = 0;                // owners from here on are rigid

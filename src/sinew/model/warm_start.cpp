@@ -16,7 +16,7 @@ void warm_start(const State& state, const std::vector<Vec3>& force, std::vector<
       push += p.weight[a] * p.push;
     }
   }
-  // A node whose pushes cancelled on the way is listed twice: its sum counts once.
+  // A node whose partial sum was zero again is listed twice: its force counts once.
   for (NodeHold& hold : out) {
     Vec3& push = sum[uz(hold.node)];
     const double size = push.norm();

@@ -15,9 +15,9 @@ struct NodeHold {
   Vec3 push = Vec3::Zero();  // of all contacts of the step before on the node [N]
 };
 
-// The contact forces that held resting nodes in the step before. The force of a node counts up to
-// the size of the other forces on it [N] (nodes): more was an impact, which is over. Empty before
-// the first step. `sum` is scratch, zero before and after (nodes).
+// The contact forces that held resting nodes in the step before. The force on a node counts up to
+// the size of the other forces on it [N] (nodes): a larger force was an impact, which is over.
+// Empty before the first step. `sum` is scratch, zero before and after (nodes).
 void warm_start(const State& state, const std::vector<Vec3>& force, std::vector<Vec3>& sum,
                 std::vector<NodeHold>& out);
 

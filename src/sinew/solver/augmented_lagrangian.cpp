@@ -9,10 +9,10 @@ namespace sinew {
 namespace {
 
 constexpr int most_passes = 30;
-// How close the first pass has to come to rest, and every later one a tenth of that, while the
-// multipliers are still being found [-].
+// The tolerance of the first pass while the multipliers are still wrong; that of every later pass
+// is a tenth of the one before [-].
 constexpr double on_the_way = 1e-2;
-// A pass that leaves more than this share of the error calls for stiffer conditions.
+// If a pass leaves more than this share of the error, the constraints become stiffer.
 constexpr double slow = 0.5;
 constexpr double stiffer = 4.0;
 
@@ -26,7 +26,7 @@ NewtonReport minimise_augmented_lagrangian(const Objective& objective, LinearSol
   }
   NewtonReport report;
   report.within = false;
-  double distance = no_limit;  // of the pass before
+  double distance = no_limit;  // error of the pass before
   for (int pass = 0; pass < most_passes; ++pass) {
     NewtonOptions o = options;
     if (!report.within) o.tolerance = std::max(o.tolerance, on_the_way * std::pow(0.1, pass));

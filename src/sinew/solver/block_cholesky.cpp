@@ -4,8 +4,8 @@
 
 namespace sinew {
 
-// L D L^T by blocks: column j of L is A_ij D_j^-1, and what it takes from the columns to its right
-// is L_ij D_j L_kj^T = A_ij L_kj^T.
+// L D L^T by blocks: column j of L is A_ij D_j^-1. It subtracts L_ij D_j L_kj^T = A_ij L_kj^T from
+// the columns to its right.
 BlockCholesky::BlockCholesky(std::vector<std::map<Index, CoarseBlock>> column) {
   start_.push_back(0);
   for (std::size_t j = 0; j < column.size(); ++j) {

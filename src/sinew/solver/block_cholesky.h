@@ -9,15 +9,15 @@
 
 namespace sinew {
 
-inline constexpr int coarse_size = 12;  // unknowns of a block
+inline constexpr int coarse_size = 12;  // unknowns per block
 using CoarseBlock = Eigen::Matrix<double, coarse_size, coarse_size>;
 using CoarseVector = Eigen::Matrix<float, coarse_size, 1>;
 
 class BlockCholesky {
  public:
-  // The lower triangle by columns: column[j] maps rows i >= j to blocks. Blocks that fill in are
-  // added. Where a pivot is not positive definite its diagonal is raised until it is: what is
-  // factored is then another, positive definite matrix near the given one.
+  // The lower triangle by columns: column[j] maps rows i >= j to blocks. Fill-in blocks are added.
+  // If a pivot is not positive definite, its diagonal is raised until it is: the factors then
+  // belong to a positive definite matrix near the given one.
   explicit BlockCholesky(std::vector<std::map<Index, CoarseBlock>> column);
 
   // Solves A x = b in place, in single precision.

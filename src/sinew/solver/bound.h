@@ -1,4 +1,4 @@
-// Conditions on a quantity as energies with multipliers, as pure functions on plain values: the
+// Constraints on a quantity as energies with multipliers, as pure functions on plain values: the
 // augmented Lagrangian (Hestenes 1969, Powell 1969; for inequalities Rockafellar 1973).
 // docs/methods/constraints.md.
 #pragma once
@@ -9,16 +9,16 @@
 
 namespace sinew {
 
-// Friction goes by normal forces that are right to this share.
+// The relative tolerance of the normal forces that bound friction.
 inline constexpr double grip_tolerance = 2e-3;
 
-// A quantity q that has to stay in [low, high], with a stiffness k > 0 and the multiplier p of the
+// A quantity q with the constraint low <= q <= high, a stiffness k > 0 and the multiplier p of the
 // pass before:
 //
-//   s(q) = k (t - clamp(t, low, high)),   t = q + p / k          the pull that leads q back
+//   s(q) = k (t - clamp(t, low, high)),   t = q + p / k          the force that pulls q back
 //   W(q) = (s^2 - p^2) / (2 k)                                   dW/dq = s
 //
-// Where s(q) = p the condition holds exactly, at any k: s > 0 only at q = high, s < 0 only at low.
+// If s(q) = p, the constraint holds exactly, for any k: s > 0 only at q = high, s < 0 only at low.
 inline double bound_pull(double q, double low, double high, double k, double p) {
   const double t = q + p / k;
   return k * (t - std::clamp(t, low, high));
@@ -32,14 +32,14 @@ inline double bound_stiffness(double q, double low, double high, double k, doubl
   return bound_pull(q, low, high, k, p) != 0.0 ? k : 0.0;
 }
 
-// Coulomb friction over a slip u along the plane, of at most r = mu times the normal force, with a
+// Coulomb friction for a slip u along the plane: at most r = mu times the normal force, with a
 // stiffness k and the multiplier p of the pass before:
 //
 //   s(u) = t min(1, r / |t|),   t = p + k u
-//   W(u) = (|t|^2 / 2  or, where |t| > r,  r |t| - r^2 / 2) / k - |p|^2 / (2 k)     dW/du = s
+//   W(u) = (|t|^2 / 2  or, if |t| > r,  r |t| - r^2 / 2) / k - |p|^2 / (2 k)        dW/du = s
 //
-// Where s(u) = p the node sticks (u = 0, |s| <= r) or slides (s = r u / |u|), without a speed below
-// which it creeps.
+// If s(u) = p, the node sticks (u = 0, |s| <= r) or slides (s = r u / |u|); there is no creep at
+// low speed.
 inline Vec3 friction_pull(const Vec3& u, double r, double k, const Vec3& p) {
   const Vec3 t = p + k * u;
   const double size = t.norm();
@@ -50,7 +50,7 @@ inline double friction_energy(const Vec3& u, double r, double k, const Vec3& p) 
   const double t = size <= r ? 0.5 * size * size : r * (size - 0.5 * r);
   return (t - 0.5 * p.squaredNorm()) / k;
 }
-// The second derivative as a block on displacements of which only the part along the plane with the
+// The second derivative as a block on displacements; only their part along the plane with the
 // normal n counts.
 inline Mat3 friction_stiffness(const Vec3& u, double r, double k, const Vec3& p, const Vec3& n) {
   const Mat3 plane = Mat3::Identity() - n * n.transpose();

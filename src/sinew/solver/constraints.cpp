@@ -12,13 +12,13 @@
 namespace sinew {
 namespace {
 
-constexpr double ratio = 10.0;  // of a condition's stiffness and what its nodes resist with
+constexpr double ratio = 10.0;  // of a constraint's stiffness to the resistance of its nodes
 
-// Largest distance of a cell's volume from its bound that is good enough, as a share of it (a tenth
-// of its limit where that is less).
+// The tolerance of a cell's volume, as a share of its rest volume (a tenth of its limit if that is
+// less).
 constexpr double cell_tolerance = 1e-4;
 
-// 1/D_i [m/N] (nodes), 0 where the motion is given: the diagonal of M inertia + C rate + K at rest.
+// 1/D_i [m/N] (nodes), 0 for prescribed motion: the diagonal of M inertia + C rate + K at rest.
 std::vector<double> node_compliance(const Model& model, double inertia, double rate) {
   std::vector<double> d(model.rest_position.size(), 0.0);
   for (std::size_t i = 0; i < d.size(); ++i) {
@@ -90,7 +90,7 @@ Interval cell_interval(const Model& model, std::size_t c) {
           (1.0 + model.volume_limit[c]) * model.cell_volume[c]};
 }
 
-// Calls f(k) for every limited spring; two that run at once share no node.
+// Calls f(k) for every limited spring; springs that are processed in parallel share no node.
 template <typename F>
 void for_each_limited(const Model& model, const F& f) {
   for (std::size_t c = 0; c + 1 < model.colour_start.size(); ++c) {

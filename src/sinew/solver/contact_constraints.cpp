@@ -9,11 +9,11 @@
 namespace sinew {
 namespace {
 
-// Depth that is good enough, and gap below which contacts are looked at before they touch, as
-// shares of the mean edge. Planes are looked at from any distance: see ContactReach.
+// The depth tolerance, and the gap below which contacts are included before they touch, as shares
+// of the mean edge. Planes are included at any distance: see ContactReach.
 constexpr double depth_tolerance = 1e-4;
 constexpr double reach_share = 0.05;
-// So often are contacts found anew before those that are held stay as they are.
+// The number of passes that find all contacts again; later passes only add contacts.
 constexpr int free_passes = 6;
 
 template <typename F>
@@ -27,7 +27,7 @@ ContactConstraints::ContactConstraints(const Model& model, const std::vector<dou
                                        double ratio, double inertia, bool friction)
     : model_(model), ratio_(ratio), friction_(friction), compliance_(compliance) {
   if (!ContactFinder::anything_to_find(model)) return;
-  // Single masses have no size but the way they fall in a step.
+  // The size of single masses is their fall in a step.
   const double edge = mean_edge(model);
   const double size = edge > 0.0 ? edge : model.start_gravity.norm() / inertia;
   tolerance_ = depth_tolerance * size;
@@ -60,14 +60,14 @@ ContactConstraints::Held ContactConstraints::hold(const Contact& c) const {
   double sum = 0.0;
   for_each_node(c, [&](std::size_t i, double w) { sum += w * w * compliance_[i]; });
   h.stiffness = sum > 0.0 ? ratio_ / sum : 0.0;
-  h.start = c.way - c.anchor;  // the anchor where the step starts
+  h.start = c.way - c.anchor;  // with the anchor at the start of the step
   const std::vector<Vec3>& from = from_ != nullptr ? *from_ : here_;
   for_each_node(c, [&](std::size_t i, double w) { h.start += w * from[i]; });
   return h;
 }
 
-// Contacts at x; what they push with is that of the same pair before, or of the same feature where
-// it has gone on to another part of its owner.
+// Finds the contacts at x. A contact takes the force of the same pair before, or of the same
+// feature if it has moved on to another part of its owner.
 void ContactConstraints::find(const std::vector<Vec3>& x) {
   finder_->find(from_ != nullptr ? *from_ : here_, x, before_, now_, {reach_, no_limit}, found_);
   if (passes_ > free_passes) {
@@ -102,7 +102,7 @@ void ContactConstraints::find(const std::vector<Vec3>& x) {
     }
     const Vec3& n = h.contact.normal;
     const double normal = std::max(0.0, n.dot(h.push));
-    h.push = h.push - n.dot(h.push) * n;  // across
+    h.push = h.push - n.dot(h.push) * n;  // tangential
     h.grip = h.contact.friction * normal;
     const double size = h.push.norm();
     if (size > h.grip) h.push *= h.grip / size;
@@ -111,7 +111,7 @@ void ContactConstraints::find(const std::vector<Vec3>& x) {
   held_ = std::move(next);
 }
 
-// Of what was found only pairs that are not held yet: the others stay where and as they are.
+// Adds only the pairs that are not held yet; the held contacts do not change.
 void ContactConstraints::add_new() {
   const auto before = [](const Held& a, const Held& b) {
     return comes_before(a.contact, b.contact);
@@ -124,7 +124,7 @@ void ContactConstraints::add_new() {
   std::sort(held_.begin(), held_.end(), before);
 }
 
-// Way of the place across the normal since the start of the step [m].
+// The tangential displacement of the contact since the start of the step [m].
 Vec3 ContactConstraints::slip(const Held& h, const std::vector<Vec3>& x) const {
   const Vec3 way = contact_offset(h.contact, x) - h.start;
   return way - h.contact.normal.dot(way) * h.contact.normal;
@@ -211,12 +211,12 @@ ContactConstraints::Change ContactConstraints::update(const std::vector<Vec3>& x
     const double grip = h.contact.friction * h.contact.normal.dot(p);
     grip_change += std::abs(grip - h.grip);
     grips += grip;
-    h.grip = 0.5 * (h.grip + grip);  // of those that stay held: the mean does not go to and fro
+    h.grip = 0.5 * (h.grip + grip);  // for contacts that stay held: the mean does not oscillate
   }
   if (grip_change > 0.0) {
     change.grip = grips > 0.0 ? grip_change / (grip_tolerance * grips) : no_limit;
   }
-  // What is found anew pushes elsewhere, or is too deep and does not push yet.
+  // New contacts push at other places, or are too deep and have no force yet.
   std::vector<Vec3> difference(x.size(), Vec3::Zero());
   add_reactions(difference);
   for (Vec3& f : difference) f = -f;
@@ -232,7 +232,7 @@ ContactConstraints::Change ContactConstraints::update(const std::vector<Vec3>& x
       change.anew = std::max(change.anew, -contact_gap(h.contact, x) / tolerance_);
     }
   }
-  // Pushes that are off because places have changed are no reason to harden.
+  // A force error due to changed contacts is no reason to harden.
   if (change.anew > 1.0) {
     change.anew = std::max(change.anew, change.distance);
     change.distance = 0.0;

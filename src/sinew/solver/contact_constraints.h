@@ -1,5 +1,5 @@
-// Contacts of bodies with each other, with themselves and with hard obstacles as part of what
-// implicit steps and rest states minimise. docs/methods/contact.md.
+// Contacts of bodies with each other, with themselves and with hard obstacles as part of the
+// objective of implicit steps and rest states. docs/methods/contact.md.
 #pragma once
 
 #include <memory>
@@ -11,23 +11,24 @@
 
 namespace sinew {
 
-// A condition gap >= 0 with friction for every contact that was found, with places, weights and
-// normals as they were then: within a pass of minimise_augmented_lagrangian they stay, so that what
-// is minimised is smooth and has a tangent; update() finds them anew. After some passes it only
-// adds to them: in a fold two places can go to and fro between two faces for ever. Contacts keep
-// their push from pass to pass and from step to step by their id, or by the feature where the
-// partner has changed.
+// A constraint gap >= 0 with friction for every contact found. Within a pass of
+// minimise_augmented_lagrangian the nodes, weights and normals of the contacts do not change, so
+// the objective is smooth and has a tangent; update() finds the contacts again. After some passes
+// update() only adds contacts: in a fold two contacts could alternate between two faces for ever.
+// Contacts keep their force between passes and steps by their id, or by the feature if the partner
+// has changed.
 class ContactConstraints {
  public:
-  // compliance: of the nodes [m/N]; ratio: of a contact's stiffness and what its nodes resist with;
+  // compliance: of the nodes [m/N]; ratio: of a contact's stiffness to the resistance of its nodes;
   // inertia [1/s2]: as in Objective.
   ContactConstraints(const Model& model, const std::vector<double>& compliance, double ratio,
                      double inertia, bool friction);
 
   bool empty() const { return !finder_; }
 
-  // Takes the pushes of the state's last step. from: where the step starts [m] (nodes), null: rest
-  // states, without friction; `step` [s] before state.time.
+  // Takes the contact forces of the state's last step. from: positions at the start of the step [m]
+  // (nodes), or null for rest states, which have no friction; the step starts `step` [s] before
+  // state.time.
   void start(const State& state, const std::vector<Vec3>* from, double step);
 
   double value(const std::vector<Vec3>& x) const;                               // [J]
@@ -36,38 +37,38 @@ class ContactConstraints {
   void linearise(const std::vector<Vec3>& x);
   void add_stiffness_times(const std::vector<Vec3>& u, std::vector<Vec3>& out) const;
 
-  // What linearise() found: sum_ab weight_a weight_b block between the contact's nodes.
+  // A result of linearise(): sum_ab weight_a weight_b block between the contact's nodes.
   struct Tangent {
     const Contact* contact = nullptr;
     Mat3 block = Mat3::Zero();  // [N/m]
   };
   const std::vector<Tangent>& tangents() const { return tangents_; }
 
-  // Makes the pushes at x the multipliers and finds the contacts at x. Returns the change of the
-  // pushes as a multiple of the tolerance; `grip`: the same for the normal forces that friction
-  // goes by.
+  // Takes the forces at x as the multipliers and finds the contacts at x. Returns the change of the
+  // forces as a multiple of the tolerance; `grip`: the same for the normal forces that bound
+  // friction.
   struct Change {
     double distance = 0.0;
     double grip = 0.0;
-    double anew = 0.0;  // what the contacts found anew are off by
+    double anew = 0.0;  // error due to contacts that were found again
   };
   Change update(const std::vector<Vec3>& x);
   void harden(double factor) { hardness_ *= factor; }
 
-  std::vector<ContactPush> pushes() const;                   // those that push
+  std::vector<ContactPush> pushes() const;                   // the contacts with a force
   double deepest(const std::vector<Vec3>& x) const;          // [m]
   void add_obstacle_forces(std::vector<Vec3>& force) const;  // of the bodies on obstacles [N]
-  // Work of the pushes on the way of the obstacles' surfaces, and against the slip [J].
+  // Work of the contact forces on the motion of the obstacles' surfaces, and against the slip [J].
   double work_of_obstacles() const;
   double work_of_friction(const std::vector<Vec3>& x) const;
 
  private:
   struct Held {
     Contact contact;
-    double stiffness = 0.0;     // [N/m]
-    double grip = 0.0;          // mu times the normal force of the pass before [N]
-    Vec3 push = Vec3::Zero();   // multiplier, on the place [N]
-    Vec3 start = Vec3::Zero();  // contact_offset where the step starts, the anchor there too [m]
+    double stiffness = 0.0;  // [N/m]
+    double grip = 0.0;       // bound of friction: mu times the normal force of the pass before [N]
+    Vec3 push = Vec3::Zero();   // multiplier, force of the contact [N]
+    Vec3 start = Vec3::Zero();  // contact_offset, also the anchor, at the start of the step [m]
   };
   void find(const std::vector<Vec3>& x);
   void add_new();
@@ -85,7 +86,7 @@ class ContactConstraints {
   std::vector<double> compliance_;  // [m/N] (nodes)
   std::unique_ptr<ContactFinder> finder_;
   const std::vector<Vec3>* from_ = nullptr;
-  std::vector<Vec3> here_;           // what stands for `from` in rest states [m] (nodes)
+  std::vector<Vec3> here_;           // replaces `from` in rest states [m] (nodes)
   double before_ = 0.0, now_ = 0.0;  // times of the step [s]
   std::vector<Contact> found_;
   std::vector<Held> held_;  // by id

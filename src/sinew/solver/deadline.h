@@ -1,5 +1,4 @@
-// The wall-clock time at which a step has to end, in budget mode:
-// docs/methods/budget.md.
+// The wall-clock time at which a step must end, in budget mode: docs/methods/budget.md.
 #pragma once
 
 #include <optional>
@@ -8,7 +7,7 @@
 
 namespace sinew {
 
-using Deadline = std::optional<Clock::time_point>;  // none: all the time it takes
+using Deadline = std::optional<Clock::time_point>;  // none: no time limit
 
 inline bool passed(const Deadline& deadline) {
   return deadline && Clock::now() >= *deadline;

@@ -1,4 +1,5 @@
-// Rest states that Newton's method does not find from where it starts. docs/methods/static.md.
+// Dynamic relaxation: finds rest states that Newton's method does not find from its start.
+// docs/methods/static.md.
 #include <algorithm>
 #include <cmath>
 
@@ -9,17 +10,17 @@
 
 namespace sinew {
 
-// Follows the body as it would fall to rest: steps of backward Euler, of a length at which Newton's
-// method has little to do, that start anew without velocity whenever the body has passed its
-// fastest (kinetic damping, Cundall 1976). Comes through where a stiff part has to turn far and
-// straight steps go astray. All of the load at once.
+// Follows the damped motion of the body to rest: steps of backward Euler, of a length at which
+// Newton's method needs few iterations. The velocities are set to zero whenever the kinetic energy
+// has passed a maximum (kinetic damping, Cundall 1976). This succeeds if a stiff part has to rotate
+// far and Newton's straight steps fail. The whole load acts at once.
 NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double start_time,
                                              double time, const StaticOptions& options,
                                              StaticProgress progress, State& state) {
   constexpr int few = 10;        // Newton steps
-  constexpr double near = 1e-4;  // what moves the body still, as a share of the load
+  constexpr double near = 1e-4;  // Newton's method is tried below this share of the load
   double h = 1.0 / 30.0;         // [s]
-  double pull = 1.0;             // what still moves the body, as a share of the load
+  double pull = 1.0;             // the force that still moves the body, as a share of the load
   double fastest = 0.0;          // |v|^2
   const Field outer = outer_forces(model_, controls, state);
   double load = std::sqrt(dot(outer, outer));  // [N]
@@ -60,7 +61,7 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
       const double k = objective.inertia * model_.mass[uz(i)];
       return k * k * (state.position[uz(i)] - inertial[uz(i)]).squaredNorm();
     });
-    if (load == 0.0) load = std::max(std::sqrt(force), 1e-300);  // nothing but moved pins
+    if (load == 0.0) load = std::max(std::sqrt(force), 1e-300);  // only pins have moved
     pull = std::sqrt(force) / load;
     progress.newton += step.newton;
     progress.residual = pull;

@@ -1,4 +1,4 @@
-// One vector per node, and sums over them in an order that no thread count changes.
+// One vector per node, and sums over them in an order that does not depend on the thread count.
 #pragma once
 
 #include <vector>

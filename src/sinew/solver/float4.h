@@ -1,4 +1,4 @@
-// Four floats that the processor adds and multiplies at once: a Vec3 in single precision.
+// Four floats that the processor adds and multiplies together: a Vec3 in single precision.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 namespace sinew {
 
 // The vector extension of GCC and Clang: SSE on x86, NEON on ARM, plain code elsewhere, with the
-// same bits everywhere because nothing is contracted.
+// same bits everywhere because no multiply-add is contracted.
 struct Float4 {
   typedef float Lanes __attribute__((vector_size(16)));
   Lanes lanes = {0.0f, 0.0f, 0.0f, 0.0f};  // x, y, z, 0

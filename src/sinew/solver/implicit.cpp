@@ -19,7 +19,7 @@ constexpr double single_tolerance = 1e-3;
 
 constexpr int most_step_cuts = 10;
 
-const double sdirk2_share = 1.0 - std::sqrt(0.5);  // g: of a step, that each of its parts solves
+const double sdirk2_share = 1.0 - std::sqrt(0.5);  // g: the share of a step in each of its parts
 
 // a x + b y of all nodes.
 Field blend(double a, const Field& x, double b, const Field& y) {
@@ -29,7 +29,7 @@ Field blend(double a, const Field& x, double b, const Field& y) {
   return out;
 }
 
-// Where the pinned nodes are at state.time.
+// Moves the pinned nodes to their positions at state.time.
 void move_pins(const Model& model, State& state) {
   for (const Pin& pin : model.pins) {
     for (const Index node : pin.nodes) {
@@ -38,8 +38,8 @@ void move_pins(const Model& model, State& state) {
   }
 }
 
-// What loads, pins and obstacles put in since the time `since`: their forces at its end along the
-// way. pull: of the model and the constraints on all nodes at the end [N].
+// The work of loads, pins and obstacles since the time `since`: their forces at the end times the
+// displacement. pull: forces of the model and the constraints on all nodes at the end [N].
 double work_of_the_outside(const Model& model, const Field& before, double since,
                            const State& state, const Field& pull) {
   double work = 0.0;
@@ -79,16 +79,16 @@ void ImplicitStepper::prepare(double h, const Controls& controls, const Implicit
 }
 
 // Backward Euler over h from the positions `from` with `velocity`, dashpots in their directions at
-// state.position; loads and pins as they are at state.time. Moves the state's positions and sets
-// its velocities. Returns what the model and the constraints pull all nodes with there [N]; nothing
-// where no equilibrium was found.
+// state.position, loads and pins at state.time. Moves the state's positions and sets its
+// velocities. Returns the forces of the model and the constraints on all nodes at the end [N], or
+// nothing if no equilibrium was found.
 std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
                                             const Controls& controls,
                                             const ImplicitOptions& options, State& state,
                                             StepReport& report) {
   const double inertia = 1.0 / (h * h);
-  // Frames end at round times, and the last digits of h differ from frame to frame: rounded, so
-  // that what is kept from step to step is what a resumed run makes anew.
+  // Frames end at round times, so the last digits of h differ from frame to frame. Rounded, the
+  // kept data are the same as those that a resumed run computes again.
   const double about = static_cast<double>(static_cast<float>(inertia));
   if (constrained_inertia_ != about) {
     constraints_ = std::make_unique<Constraints>(model_, about, std::sqrt(about), true);
@@ -109,7 +109,8 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
   move_pins(model_, state);
   const Field stand = state.position;
   const double standing = options.deadline ? objective_value(objective, state, forces) : 0.0;
-  // On as it moves; with a deadline only where that costs less than to stand still.
+  // Starts from the inertial positions; with a deadline only if their objective is below that of
+  // the current ones.
   state.position = inertial;
   move_pins(model_, state);
   if (options.deadline && !(objective_value(objective, state, forces) < standing)) {
@@ -119,7 +120,7 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
       minimise_augmented_lagrangian(objective, linear_, newton_options, forces, state);
   report.newton += newton.newton;
   report.products += newton.products;
-  if (!newton.rests && !options.deadline) {  // a start that flew too far: from where it stands
+  if (!newton.rests && !options.deadline) {  // starts again from the old positions
     state.position = stand;
     constraints_->start(state, &from, h);
     newton = minimise_augmented_lagrangian(objective, linear_, newton_options, forces_, state);
@@ -138,7 +139,8 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
   return std::move(newton.pull);
 }
 
-// Heat of dashpots and drag by the scheme's own weights, work along the way from `before`.
+// The heat of dashpots and drag with the scheme's weights, and the work on the displacement from
+// `before`.
 void ImplicitStepper::account(const Field& before, double since, double weight, const Field& pull,
                               State& state) {
   state.energy.dissipated += weight * damping_power(model_, before, state.half_velocity);
@@ -176,8 +178,8 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
   if (!pull) return false;
   account(x, state.time - h, h, *pull, state);
   if (constraints_->empty()) return true;
-  // The impulses of contacts and limits work on the mean of the velocities before and after
-  // the step, as in Verlet's balance: none where the body just rests.
+  // The work of the impulses of contacts and limits uses the mean of the velocities before and
+  // after the step, as in Verlet's energy balance: it is 0 for a body at rest.
   Field push(x.size(), Vec3::Zero());
   constraints_->add_reactions(state.position, forces_.tets(state.position), push);
   keep_free(model_, push);
@@ -191,7 +193,7 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
 
 bool ImplicitStepper::try_step(double h, const Controls& controls, const ImplicitOptions& options,
                                State& state, StepReport& report) {
-  state.last_step = 0.0;  // the velocity is that of the time
+  state.last_step = 0.0;  // the velocity is that at state.time
   bool done = false;
   if (options.scheme == Scheme::sdirk2 && !act(state.reactions)) {
     const State before = state;
@@ -211,13 +213,13 @@ StepReport ImplicitStepper::step(double h, const Controls& controls, const Impli
   return advance(h, controls, options, state);
 }
 
-// Steps that are cut in half where Newton's method does not arrive.
+// Takes the step; cuts it in half if Newton's method does not converge.
 StepReport ImplicitStepper::advance(double h, const Controls& controls,
                                     const ImplicitOptions& options, State& state) {
   StepReport report;
   const State start = state;
   double length = h;
-  int parts = 1;  // of the step, all of this length
+  int parts = 1;  // of the step, all of length `length`
   int done = 0;
   for (int cuts = 0; done < parts;) {
     const State before = state;
@@ -226,7 +228,7 @@ StepReport ImplicitStepper::advance(double h, const Controls& controls,
       ++done;
       continue;
     }
-    state = before;  // report keeps what the attempt took, but no step left its residual
+    state = before;  // the report keeps the cost of the attempt, but not its residual
     report.residual = residual;
     if (++cuts > most_step_cuts) {
       throw Error(

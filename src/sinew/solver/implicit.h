@@ -1,4 +1,4 @@
-// Implicit steps: stable at any length. docs/methods/implicit.md.
+// Implicit steps: stable for any step length. docs/methods/implicit.md.
 #pragma once
 
 #include <memory>
@@ -18,11 +18,11 @@ struct ImplicitOptions {
   Scheme scheme = Scheme::sdirk2;
   double tolerance = 1e-6;  // see NewtonReport::residual
   int max_newton = 50;      // Newton steps before the step is cut in half
-  bool single = false;      // forces in single precision, where it may_take_single()
-  Deadline deadline = {};   // the iterate of that time is the step, however far it is
+  bool single = false;      // forces in single precision if may_take_single()
+  Deadline deadline = {};   // then the current iterate becomes the step, whatever its residual
 };
 
-// Whether steps to this tolerance may take forces in single precision: its digits are more than
+// Whether steps with this tolerance may use forces in single precision: the tolerance is coarse
 // enough, and the model has no contacts and no limits.
 bool may_take_single(const Model& model, double tolerance);
 
@@ -34,28 +34,29 @@ class ImplicitStepper {
   //
   //   |x - y|_M^2 / (2 h^2) + E(x) + (x - x_n) . C (x - x_n) / (2 h),   y = x_n + h v_n,
   //
-  // E all energies with pins, loads and obstacles of the time t + h, C the dashpots in their
+  // E all energies with pins, loads and obstacles at the time t + h, C the dashpots in their
   // directions at x_n; then v = (x - x_n) / h (Martin et al. 2011). SDIRK2 (Alexander 1977) takes
   // two such steps of g h, g = 1 - sqrt(1/2): the first from x_n and v_n gives v_1, the second
   // starts from x_n + (1 - g) h v_1 and v_n + (1 - g)/g (v_1 - v_n). Both schemes are L-stable.
-  // Dashpots and drag see the velocity at the end of the (part) step.
+  // Dashpots and drag use the velocity at the end of the (part) step.
   //
-  // Contacts, with friction, and limits hold at the end of the step (solver/constraints.h).
-  // A step in which one of them acts is one of backward Euler: SDIRK2 would carry what stops an
-  // impact in its first part on into the second, by (1 - g)/g = 2.4, and throw the body back.
-  // Impacts are plastic, whatever the restitution.
+  // Contacts, with friction, and limits hold at the end of the step (solver/constraints.h). A step
+  // in which one of them acts is a step of backward Euler: SDIRK2 would carry the change of
+  // velocity by an impact in its first part into the second, multiplied by (1 - g)/g = 2.4, and
+  // throw the body back. Impacts are plastic for any restitution.
   //
-  // A tangled body (forces/inversion_recovery.h) is led back towards its rest shape instead.
+  // A tangled body (forces/inversion_recovery.h) is pulled back towards its rest shape instead.
   //
-  // Where Newton's method does not converge, the step is cut in half, up to ten times. Throws
-  // Error(diverged) where that is not enough. With a deadline the step is the iterate of Newton's
-  // method at that time, and no step is cut; its potential is below that of standing still.
+  // If Newton's method does not converge, the step is cut in half, up to ten times. Throws
+  // Error(diverged) if that is not enough. With a deadline the result is the iterate of Newton's
+  // method at that time, and no step is cut; its objective is below that of the positions before
+  // the step.
   StepReport step(double h, const Controls& controls, const ImplicitOptions& options, State& state);
 
   // Factors the preconditioner of steps of length h, before a deadline counts.
   void prepare(double h, const Controls& controls, const ImplicitOptions& options);
 
-  // In double precision.
+  // Evaluates forces in double precision.
   ForceEvaluator& forces() { return forces_; }
 
  private:
@@ -76,9 +77,9 @@ class ImplicitStepper {
 
   const Model& model_;
   ForceEvaluator forces_;                    // in double precision
-  std::optional<ForceEvaluator> in_single_;  // made when first asked for
+  std::optional<ForceEvaluator> in_single_;  // created at the first use
   LinearSolver linear_;
-  double constrained_inertia_ = 0.0;  // what constraints_ was made for
+  double constrained_inertia_ = 0.0;  // inertia for which constraints_ was created
   std::unique_ptr<Constraints> constraints_;
 };
 

@@ -1,4 +1,4 @@
-// Implicit steps of a body that is tangled. docs/methods/inversion-recovery.md.
+// Implicit steps of a tangled body. docs/methods/inversion-recovery.md.
 #include <algorithm>
 #include <iterator>
 
@@ -11,10 +11,10 @@
 namespace sinew {
 namespace {
 
-constexpr int most_ways = 20;  // that are led at once
+constexpr int most_ways = 20;  // recovery steps in one step of the stepper
 
-// Those of the bodies that were tangled and no longer are, and whether some of their tets are still
-// inverted, though too few to call them tangled: with those, the material would rest in a fold.
+// The bodies that are no longer tangled, and whether some of their tets are still inverted, though
+// too few to count as tangled: with those the material would come to rest in a fold.
 struct Righted {
   std::vector<Index> bodies;
   bool half = false;
@@ -36,8 +36,8 @@ Righted find_righted(const Model& model, std::span<const Index> were, const Stat
 
 }  // namespace
 
-// Minimising leads into the nearest fold, so the nodes of tangled bodies are given the way that
-// inversion recovery pulls them; everything else takes its implicit step beside them.
+// Minimisation finds the nearest fold, so the nodes of tangled bodies move as inversion recovery
+// pulls them. The other nodes take an implicit step with these motions prescribed.
 StepReport ImplicitStepper::lead_back(std::span<const Index> tangled, double h,
                                       const Controls& controls, const ImplicitOptions& options,
                                       State& state) {

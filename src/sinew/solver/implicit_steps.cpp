@@ -1,12 +1,12 @@
-// stepper = "implicit" behind the interface of all steppers.
+// stepper = "implicit" with the interface of all steppers.
 #include "sinew/solver/implicit.h"
 #include "sinew/solver/stepper.h"
 
 namespace sinew {
 namespace {
 
-// What dt = "auto" takes at most [s]: a step is stable at any length, but shows nothing of
-// oscillations that are faster.
+// The longest step of dt = "auto" [s]: a step is stable at any length, but does not resolve faster
+// oscillations.
 constexpr double longest_implicit = 1.0 / 60.0;
 
 class ImplicitSteps : public Stepper {

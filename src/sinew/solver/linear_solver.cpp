@@ -26,8 +26,8 @@ void LinearSolver::factor(const Objective& objective, double time) {
   Objective rest = objective;
   rest.lag = &rest_position;
   rest.constraints = nullptr;
-  // The last digits of a step differ from frame to frame: rounded, so that what is kept from step
-  // to step is what a resumed run makes anew.
+  // The last digits of a step differ from frame to frame. Rounded, the kept factors are the same as
+  // those that a resumed run computes again.
   rest.inertia = static_cast<double>(static_cast<float>(objective.inertia));
   if (rest.inertia > 0.0 && objective.rate > 0.0) rest.rate = std::sqrt(rest.inertia);
   matrix_.assemble(rest, rest_position, time, compute_tet_state(objective.model, rest_position));
@@ -56,7 +56,7 @@ int LinearSolver::solve(const Field& r, double forcing, int most, const Deadline
   p.assign(r.size(), Vec3::Zero());
   if (size == 0.0) return 0;
   parallel_for(nodes, [&](Index i) {
-    r_[uz(i)] = Float4(Vec3(r[uz(i)] / size));  // no square of it leaves the range of a float
+    r_[uz(i)] = Float4(Vec3(r[uz(i)] / size));  // its squares stay within the range of a float
     p_[uz(i)] = Float4();
   });
   double rz = preconditioner_.apply(matrix_, r_, z_);

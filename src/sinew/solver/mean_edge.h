@@ -1,4 +1,4 @@
-// The length that tolerances of positions are shares of.
+// The length to which tolerances of positions are relative.
 #pragma once
 
 #include "sinew/model/model.h"

@@ -17,7 +17,7 @@ namespace {
 
 constexpr int most_iterations = 60;
 
-// Vectors that nothing in the mesh favours.
+// Start vectors without any symmetry of the mesh.
 std::vector<Field> start_block(const Model& model, int size) {
   const Field zero(model.rest_position.size(), Vec3::Zero());
   std::vector<Field> block(static_cast<std::size_t>(size), zero);
@@ -51,7 +51,7 @@ class Subspace {
         solver_(model),
         block_(start_block(model, size)) {}
 
-  // One inverse iteration and Ritz step; eigenvalues, increasing.
+  // One inverse iteration and Rayleigh-Ritz step; returns the eigenvalues, ascending.
   Eigen::VectorXd iterate() {
     for (std::size_t k = 0; k < block_.size(); ++k) {
       Field& u = block_[k];
@@ -121,7 +121,7 @@ Modes lowest_modes(const Model& model, const Field& x, int count, double toleran
     ++free_nodes;
     free_mass += model.mass[i];
   }
-  // Twice as many vectors as modes, so that the last of them converges as fast as (1/2)^2 or so.
+  // Twice as many vectors as modes, so the last mode converges with a factor of about (1/2)^2.
   const int size = std::min(std::max(2 * count, count + 4), 3 * free_nodes);
   Modes modes;
   if (size == 0) return modes;

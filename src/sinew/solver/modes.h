@@ -1,5 +1,5 @@
-// Free vibrations of small size: the lowest natural frequencies and their shapes.
-// docs/methods/static.md has the solver behind it.
+// Free vibrations of small amplitude: the lowest natural frequencies and their shapes.
+// docs/methods/static.md describes the linear solver.
 #pragma once
 
 #include <vector>
@@ -9,7 +9,7 @@
 namespace sinew {
 
 struct Modes {
-  std::vector<double> omega;             // angular frequency, increasing [rad/s] (modes)
+  std::vector<double> omega;             // angular frequency, ascending [rad/s] (modes)
   std::vector<std::vector<Vec3>> shape;  // u with u . M u = 1, 0 on pinned nodes (modes, nodes)
   // Share of the free mass that moves along x, y, z with the mode: (sum m u)^2 / sum m (modes)
   std::vector<Vec3> participation;
@@ -17,11 +17,11 @@ struct Modes {
   bool converged = false;
 };
 
-// The `count` lowest solutions of K u = omega^2 M u, K the tangent of all terms at positions x,
-// dashpots left out. Subspace iteration (Bathe 2013): inverse iteration of a block of vectors with
-// Rayleigh and Ritz's method in between, until no eigenvalue changes by more than `tolerance`.
-// Needs a tangent that is positive definite: a rest state of bodies that are held, else
-// Error(input). Deterministic.
+// The `count` lowest solutions of K u = omega^2 M u, with K the tangent of all terms at positions
+// x, without dashpots. Subspace iteration (Bathe 2013): inverse iteration of a block of vectors
+// with a Rayleigh-Ritz step in between, until no eigenvalue changes by more than `tolerance`. The
+// tangent must be positive definite: a rest state of bodies that are held; otherwise Error(input).
+// Deterministic.
 Modes lowest_modes(const Model& model, const std::vector<Vec3>& x, int count,
                    double tolerance = 1e-6);
 

@@ -38,27 +38,27 @@ double damping_power(const Model& model, const Field& x, const Field& v) {
 namespace {
 
 constexpr int most_products =
-    500;  // for one direction; a truncated one leads downhill all the same
-// A load that no rest state can carry drives the body away: further than this many times its size,
-// Newton's method has lost it.
+    500;  // per direction; a truncated direction is a descent direction too
+// A load that no rest state can carry drives the body away. Beyond this many times its size
+// Newton's method gives up.
 constexpr double reach_in_bodies = 10.0;
 
-// x - from.
+// The displacement x - from.
 Field way(const Objective& objective, const State& state) {
   Field u(state.position);
   add(u, -1.0, *objective.from);
   return u;
 }
 
-// out = C u, dashpots and viscosity as at objective.lag, and drag.
+// out = C u, dashpots and viscosity at objective.lag, and drag.
 Field damping_times(const Objective& objective, const Field& u, ForceEvaluator& forces) {
   Field out(u.size());
   forces.products().damping_times({objective.model, objective.controls, *objective.lag}, u, out);
   return out;
 }
 
-// What is left of digits in a force that rests: a unit in the last place of the positions times
-// what a node resists with, over all nodes [N].
+// The rounding error of the forces in equilibrium: a unit in the last place of the positions times
+// the resistance of a node, over all nodes [N].
 double rounding_force(const Objective& objective, const LinearSolver& linear, const State& state) {
   const Model& model = objective.model;
   double far = 0.0;
@@ -71,7 +71,8 @@ double rounding_force(const Objective& objective, const LinearSolver& linear, co
   return std::numeric_limits<double>::epsilon() * far * std::sqrt(inertial + material);
 }
 
-// See minimise(). material: what the tets pull with at a strain of 1e-5, squared [N2].
+// The norm of the carried forces, see minimise(). material: the square of the tets' forces at a
+// strain of 1e-5 [N2].
 double carried(const Objective& objective, double material, const State& state, const Field& pull) {
   const Model& model = objective.model;
   const Field outer = outer_forces(model, objective.controls, state);
@@ -90,10 +91,10 @@ double carried(const Objective& objective, double material, const State& state, 
   return std::sqrt(std::max({dot(outer, outer), inertial, reactions, material}));
 }
 
-// Moves along p, the whole way where the force along p is then a fraction of what it was, which
-// costs no more than the force there (`f` becomes it). Else, and always where `strict`, so that the
-// energy falls: halves the step until it does. Close to rest, where the change drowns in rounding,
-// the force along p has to shrink instead. Returns false if nothing did.
+// Moves along p. The full step is taken if the force along p is then a fraction of the one before,
+// which costs only the force there (`f` becomes it). Otherwise, and always with `strict`, the step
+// is halved until the energy decreases. Near equilibrium, where the change is lost in rounding, the
+// force along p must shrink instead. Returns false if neither is reached.
 bool line_search(const Objective& objective, const Field& p, bool strict, ForceEvaluator& forces,
                  ObjectiveForce& f, State& state) {
   const Model& model = objective.model;
@@ -108,7 +109,7 @@ bool line_search(const Objective& objective, const Field& p, bool strict, ForceE
   }
   state.position = start;
   const double before = objective_value(objective, state, forces);
-  // What the pull of the network and the push of the tets, which cancel at rest, leave of digits.
+  // The rounding error of the forces of network and tets, which cancel at rest.
   const double rounding = 1e-13 * parallel_sum(model.tet_count(), [&](Index t) {
                             return model.tet_modulus[uz(t)] * model.rest_volume[uz(t)];
                           });
@@ -128,7 +129,7 @@ bool line_search(const Objective& objective, const Field& p, bool strict, ForceE
         return true;
       }
     }
-    // The parabola through energy and slope at 0 and the energy here, kept in bounds.
+    // The minimum of the parabola through energy and slope at 0 and the energy here, within bounds.
     const double bend = now - before + alpha * slope;
     const double best =
         std::isfinite(bend) && bend > 0.0 ? 0.5 * alpha * alpha * slope / bend : 0.0;
@@ -138,12 +139,12 @@ bool line_search(const Objective& objective, const Field& p, bool strict, ForceE
   return false;
 }
 
-// How far nodes may go before Newton's method has lost them.
+// The largest distance of nodes before Newton's method gives up.
 class Reach {
  public:
   Reach(const Model& model, const State& state) {
     const Vec3 rest = size(model.rest_position);
-    const Vec3 now = size(state.position);  // leaves middle_ where the nodes are
+    const Vec3 now = size(state.position);  // leaves middle_ at the middle of the current positions
     reach_ = reach_in_bodies * std::max(rest.maxCoeff(), now.maxCoeff());
   }
   bool holds(const State& state) const {
@@ -220,7 +221,7 @@ ObjectiveForce objective_force(const Objective& objective, const State& state,
 
 namespace {
 
-// The steps of minimise(), from the force at the state; `f` becomes that at the end.
+// The steps of minimise(), from the force at the state; `f` becomes the force at the end.
 NewtonReport newton_steps(const Objective& objective, LinearSolver& linear,
                           const NewtonOptions& options, ForceEvaluator& forces, State& state,
                           ObjectiveForce& f) {
@@ -231,7 +232,7 @@ NewtonReport newton_steps(const Objective& objective, LinearSolver& linear,
   const Clock::time_point start = Clock::now();
   f = objective_force(objective, state, forces);
   Deadline deadline = options.deadline;
-  // The line search and the force where it ends take about three evaluations such as this one.
+  // The line search and the force at its end take about three evaluations like this one.
   if (deadline) *deadline -= 3 * (Clock::now() - start);
   Field p;
   for (;;) {

@@ -19,11 +19,11 @@ class LinearSolver;
 
 // The function of the positions x of the free nodes that is minimised: the potential energy of the
 // model at state.time, plus
-//   share sum_i f_i . (x_i - X_i)            a dead force that is taken away in load steps
+//   share sum_i f_i . (x_i - X_i)            a dead force that is removed in load steps
 //   inertia/2 sum_i m_i |x_i - y_i|^2        of an implicit step, inertia = 1/h^2
 //   rate/2 (x - from) . C (x - from)         dashpots, viscosity and drag over that step,
-//                                            rate = 1/h, with dashpots and viscosity as at `lag`
-//   the energies of `constraints` for their multipliers as they are
+//                                            rate = 1/h, with dashpots and viscosity at `lag`
+//   the energies of `constraints` for their current multipliers
 struct Objective {
   const Model& model;
   const Controls& controls;
@@ -37,17 +37,17 @@ struct Objective {
   Constraints* constraints = nullptr;
 };
 
-// Its value [J]. state.half_velocity has to be zero here and below.
+// Its value [J]. state.half_velocity must be zero here and below.
 double objective_value(const Objective& objective, const State& state, ForceEvaluator& forces);
 
 struct ObjectiveForce {
   Field free;  // minus the gradient of the objective on the free nodes, 0 on the others [N]
-  Field pull;  // what the model and the constraints pull all nodes with [N]
+  Field pull;  // forces of the model and the constraints on all nodes [N]
 };
 ObjectiveForce objective_force(const Objective& objective, const State& state,
                                ForceEvaluator& forces);
 
-// v . C v of dashpots and viscosity as at positions x, and drag [W], v of all nodes.
+// v . C v of dashpots and viscosity at positions x, and of drag [W]; v of all nodes.
 double damping_power(const Model& model, const Field& x, const Field& v);
 
 struct NewtonProgress {
@@ -60,37 +60,37 @@ struct NewtonOptions {
   int most = 100;           // Newton steps
   const std::atomic<bool>* stop = nullptr;
   std::function<void(const NewtonProgress&)> on_progress;
-  // The current iterate is returned. One product and the search along its direction always run.
+  // The current iterate is returned at this time. One product and its line search always run.
   Deadline deadline = {};
 };
 
 struct NewtonReport {
-  bool rests = false;     // the residual was reached
+  bool rests = false;     // the residual is within the tolerance
   bool stopped = false;   // by options.stop
-  bool ran_out = false;   // of time, see options.deadline
+  bool ran_out = false;   // the deadline passed, see NewtonOptions::deadline
   int newton = 0;         // steps taken
-  int products = 0;       // Hessian products taken by the conjugate gradients
-  double force = 0.0;     // |force| left [N]
-  double residual = 0.0;  // as a share of what the body carries [-]
+  int products = 0;       // Hessian products of the conjugate gradients
+  double force = 0.0;     // remaining |force| [N]
+  double residual = 0.0;  // relative to the forces that are carried [-]
   bool within = true;     // the constraints hold (minimise_augmented_lagrangian)
-  Field pull;             // what the model and the constraints pull all nodes with at the end [N]
+  Field pull;             // forces of the model and the constraints on all nodes at the end [N]
 };
 
-// Moves the free nodes of the state to the minimum near where they are.
+// Moves the free nodes of the state to a minimum near their positions.
 //
-// The residual is |force| over the norm of what is carried: the largest of the outer forces and the
-// inertial ones on the free nodes, the model's forces on the others, and 1e-5 of what the material
-// pulls with at a strain of one.
+// The residual is |force| divided by the norm of the carried forces: the largest of the outer
+// forces and the inertial forces on the free nodes, the model's forces on the other nodes, and 1e-5
+// of the material's forces at a strain of one.
 NewtonReport minimise(const Objective& objective, LinearSolver& linear,
                       const NewtonOptions& options, ForceEvaluator& forces, State& state);
 
-// Finds the multipliers of objective.constraints as well: minimises for given multipliers, takes
-// the pushes found as the new multipliers, and repeats this until the conditions hold and the
-// forces rest.
+// Also finds the multipliers of objective.constraints: minimises for given multipliers, takes the
+// forces found as the new multipliers, and repeats this until the constraints hold and the forces
+// are in equilibrium.
 NewtonReport minimise_augmented_lagrangian(const Objective& objective, LinearSolver& linear,
                                            const NewtonOptions& options, ForceEvaluator& forces,
                                            State& state);
 
-void keep_free(const Model& model, Field& f);  // 0 on the nodes whose motion is given
+void keep_free(const Model& model, Field& f);  // 0 on the nodes with prescribed motion
 
 }  // namespace sinew

@@ -19,14 +19,14 @@
 namespace sinew {
 namespace {
 
-// Fields here are zero where the motion is given.
+// Fields in this file are zero on nodes with prescribed motion.
 
 void scale_nodes(const Model& model, Field& u) {  // u = M^-1/2 u
   parallel_for(model.node_count(),
                [&](Index i) { u[uz(i)] *= std::sqrt(model.inverse_mass[uz(i)]); });
 }
 
-// y = M^-1/2 (a K + b C) M^-1/2 u at positions x: by the packed forces where they can.
+// y = M^-1/2 (a K + b C) M^-1/2 u at positions x; uses the packed forces if they are available.
 class ScaledTangent {
  public:
   ScaledTangent(const Model& model, const Controls& controls, const Field& x,
@@ -62,8 +62,8 @@ class ScaledTangent {
   Field scratch_;
 };
 
-// Numbers in [-1, 1] that look random and are the same everywhere: a start that no symmetry of the
-// mesh makes orthogonal to the mode looked for.
+// Pseudo-random numbers in [-1, 1], the same on every machine: no symmetry of the mesh makes this
+// start vector orthogonal to the mode.
 Field scattered(const Model& model) {
   Field u(model.rest_position.size(), Vec3::Zero());
   std::uint64_t seed = 1;
@@ -84,8 +84,9 @@ struct Top {
   int steps = 0;
 };
 
-// Largest eigenvalue of the symmetric operator by Lanczos without reorthogonalisation, which
-// spoils only copies of eigenvalues already found. Stops at a relative residual of 1e-3.
+// The largest eigenvalue of the symmetric operator by the Lanczos method. Without
+// reorthogonalisation only copies of eigenvalues already found are wrong. Stops at a relative
+// residual of 1e-3.
 template <typename Operator>
 Top lanczos(const Operator& op, Field q, int most) {
   const double norm = std::sqrt(dot(q, q));
@@ -135,9 +136,9 @@ double positive_root(double a, double b) {
   return 4.0 / (b + std::sqrt(b * b + 4.0 * a));
 }
 
-// Sums of the absolute values of the rows of K that network and volume have, one per node: over
-// the pairs for L, over tets and cells for kappa/V (grad V)(grad V)^T and for s d2v/dx2, whose
-// blocks are the opposite edges' cross products over 6.
+// Row sums of the absolute values of K of network and volume, one per node: over the pairs for L,
+// over tets and cells for kappa/V (grad V)(grad V)^T and for s d2v/dx2, whose blocks are the cross
+// product matrices of the opposite edges over 6.
 std::vector<double> row_sums(const Model& model, const Field& x) {
   std::vector<double> sums(x.size(), 0.0);
   if (!model.network_start.empty()) {
@@ -182,7 +183,7 @@ std::vector<double> row_sums(const Model& model, const Field& x) {
   return sums;
 }
 
-// A step that is stable whatever the mesh: per node, the rows of K and C summed (Gershgorin).
+// A step that is stable for every mesh: per node, the row sums of K and C (Gershgorin).
 double guaranteed_step(const Model& model, const Controls& controls, const Field& x,
                        Index& stiffest) {
   std::vector<double> rows = row_sums(model, x);
@@ -228,7 +229,7 @@ StableStep find_stable_step(const Model& model, const Controls& controls, const 
   Field y(u.size());
   ScaledTangent tangent(model, controls, x, forces);
   // The largest eigenvalue is a convex function of h, so after its first step Newton's method
-  // comes from above and two or three steps do; without damping the first one is exact.
+  // converges from above in two or three steps; without damping the first step is exact.
   for (int newton = 0; newton < 8; ++newton) {
     const Top top = lanczos(
         [&](const Field& in, Field& out) { tangent.times(h * h, 2.0 * h, in, out); }, u, 60);
@@ -241,7 +242,7 @@ StableStep find_stable_step(const Model& model, const Controls& controls, const 
     const double c = dot(u, y);
     result.omega_max = std::sqrt(std::max(0.0, k));
     result.zeta = k > 0.0 ? 0.5 * c / result.omega_max : 0.0;
-    // On the safe side: an eigenvalue may be as much larger as the residual says.
+    // On the safe side: the eigenvalue may be larger by the residual.
     const double next = top.value / (top.value + top.residual) * positive_root(k, c);
     const bool done = std::abs(next - h) <= 2e-3 * h;
     h = next;
@@ -259,8 +260,8 @@ double watch_stable_step(const Model& model, const Controls& controls, const Fie
                     mode, 3);
   if (!(top.value > 0.0)) return h;
   mode = std::move(top.vector);
-  // With h scaled by s, h^2 K + 2 h C grows at most by s^2 for s > 1 and shrinks at least by s for
-  // s < 1: either way this is a stable step.
+  // If h is scaled by s, h^2 K + 2 h C grows at most by s^2 for s > 1 and shrinks at least by s for
+  // s < 1: in both cases the result is a stable step.
   return top.value > 4.0 ? h * 4.0 / top.value : h * 2.0 / std::sqrt(top.value);
 }
 

@@ -19,14 +19,14 @@ namespace sinew {
 namespace {
 
 constexpr double turn_per_load_step = 20.0 * 3.14159265358979 / 180.0;  // [rad]
-// A nearly incompressible body comes to rest in fewer Newton steps when it starts from the rest
-// state of one whose kappa is at most this many times mu: W(4) at nu = 0.499 takes 41 instead of 74
-// at 15 kPa, 19 instead of 23 at 1.5 MPa.
+// A nearly incompressible body comes to rest in fewer Newton steps from the rest state of a body
+// whose kappa is at most this many times mu: W(4) at nu = 0.499 takes 41 instead of 74 at 15 kPa,
+// 19 instead of 23 at 1.5 MPa.
 constexpr double soft_volume = 30.0;
-constexpr int most_load_cuts = 12;      // a load step may become this often half as long
-constexpr int cuts_before_falling = 2;  // then the body is followed as it falls to rest, once
+constexpr int most_load_cuts = 12;      // a load step may be halved this often
+constexpr int cuts_before_falling = 2;  // then dynamic relaxation is tried, once
 
-// The largest angle [rad] that a pin turns by between two times.
+// The largest rotation angle [rad] of a pin between two times.
 double pins_turn(const Model& model, double from, double to) {
   double largest = 0.0;
   for (const Pin& pin : model.pins) {
@@ -52,8 +52,8 @@ double pins_turn(const Model& model, double from, double to) {
   return largest;
 }
 
-// Calls f(nodes) for everything that lies between nodes and is no part of one body's material:
-// attachments, distances, and the elements of the terms.
+// Calls f(nodes) for every connection between nodes that is not part of one body's material:
+// attachments, distance constraints, and the elements of the terms.
 template <typename F>
 void for_each_joint(const Model& model, const F& f) {
   for (auto s = uz(model.first_attachment); s < model.springs.size(); ++s)
@@ -65,7 +65,8 @@ void for_each_joint(const Model& model, const F& f) {
   });
 }
 
-// Bodies joined by attachments, distances and glue, as the first body of each group (bodies).
+// Bodies joined by attachments, distance constraints and glue, as the first body of each group
+// (bodies).
 std::vector<std::size_t> joined_bodies(const Model& model) {
   std::vector<std::size_t> group(model.bodies.size());
   std::iota(group.begin(), group.end(), std::size_t{0});
@@ -88,7 +89,7 @@ std::vector<std::size_t> joined_bodies(const Model& model) {
   return group;
 }
 
-// The groups of joined bodies that no pin, no anchor and no grab holds (bodies; -1: held).
+// The groups of joined bodies that no pin, anchor or grab holds (bodies; -1: held).
 std::vector<Index> unheld_groups(const Model& model, const Controls& controls) {
   const std::vector<std::size_t> group = joined_bodies(model);
   std::vector<char> held(group.size(), 0);
@@ -103,7 +104,7 @@ std::vector<Index> unheld_groups(const Model& model, const Controls& controls) {
     }
   };
   for_each_joint(model, [&](std::span<const Index> nodes) {
-    // An anchor holds what the other nodes belong to.
+    // An anchor holds the bodies of the other nodes.
     if (*std::max_element(nodes.begin(), nodes.end()) < model.body_node_count()) return;
     for (const Index node : nodes) hold(node);
   });
@@ -120,15 +121,15 @@ std::vector<Index> unheld_groups(const Model& model, const Controls& controls) {
   return unheld;
 }
 
-// A group of joined bodies that nothing holds but the hard plane that its forces press it on.
+// A group of joined bodies that only a hard plane holds: the forces press the group on it.
 struct Resting {
   std::size_t group = 0;
   HalfSpace plane;
 };
 
-// The groups that rest on a plane. Throws for a body that nothing holds: it rests only under forces
-// that cancel each other, or that press it straight against one plane. `force`: the outer forces
-// [N] (nodes).
+// The groups that rest on a plane. Throws for a body that nothing holds: it can only rest if the
+// forces on it cancel each other, or press it along the normal of one plane. `force`: the outer
+// forces [N] (nodes).
 std::vector<Resting> resting_groups(const Model& model, const Controls& controls, double time,
                                     const Field& force) {
   const std::vector<Index> unheld = unheld_groups(model, controls);
@@ -167,7 +168,7 @@ std::vector<Resting> resting_groups(const Model& model, const Controls& controls
   return out;
 }
 
-// Puts bodies that only a plane holds down on it, or lifts them onto it, straight along its normal.
+// Moves bodies that only a plane holds onto that plane, along its normal.
 void put_down(const Model& model, const Controls& controls, const std::vector<Resting>& resting,
               State& state) {
   const std::vector<Index> unheld = unheld_groups(model, controls);
@@ -185,8 +186,8 @@ void put_down(const Model& model, const Controls& controls, const std::vector<Re
   }
 }
 
-// What ties a body that only a plane holds to its place [1/s2]: see StaticSolver::settle. A
-// hundredth of the edge of a mean tet under the body's own weight.
+// The stiffness per mass that holds a body on a plane in its place [1/s2]: see
+// StaticSolver::settle. Under the body's own weight it gives a hundredth of the edge of a mean tet.
 double nudge(const Model& model, const Controls& controls) {
   return 0.01 * controls.gravity.norm() / mean_edge(model);
 }
@@ -220,7 +221,7 @@ StaticSolver::StaticSolver(const Model& model)
 
 int StaticSolver::solve_tangent(const Configuration& at, const Field& rhs, double tolerance,
                                 Field& u) {
-  double each = 1e-4;  // what single precision takes away in one go
+  double each = 1e-4;  // relative reduction by one solve in single precision
   constexpr int most = 20000;
   Field r, p, q(u.size());
   double goal = 0.0;
@@ -237,10 +238,10 @@ int StaticSolver::solve_tangent(const Configuration& at, const Field& rhs, doubl
     if (goal == 0.0) goal = tolerance * std::sqrt(dot(r, r));
     add(r, -1.0, q);
     const double left = std::sqrt(dot(r, r));
-    // Nothing but a prescribed displacement: its forces set the scale.
+    // Only a prescribed displacement acts: its forces set the scale.
     if (goal == 0.0) goal = tolerance * left;
     if (left <= goal) break;
-    if (left > 0.5 * before) {  // too much in one go: from where it was, in shorter ones
+    if (left > 0.5 * before) {  // one solve went too far: goes back and takes shorter ones
       if (each > 0.01) break;
       each *= 30.0;
       add(u, -1.0, p);
@@ -254,9 +255,10 @@ int StaticSolver::solve_tangent(const Configuration& at, const Field& rhs, doubl
   return products;
 }
 
-// Minimises. Along a plane, and about its normal, nothing holds a body that rests on it: a weak
-// spring from every node to where it starts does, sigma m / 2 |x - x_start|^2, which moves along
-// until it carries nothing (the proximal point method, Rockafellar 1976).
+// Minimises. Nothing holds a body that rests on a plane along the plane and about its normal. A
+// weak spring from every node to its start position holds it, sigma m / 2 |x - x_start|^2. The
+// start positions move with the body until the springs carry nothing (the proximal point method,
+// Rockafellar 1976).
 NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& options,
                                   ForceEvaluator& forces, State& state) {
   constraints_.start(state, nullptr, 0.0);
@@ -287,8 +289,8 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
   }
 }
 
-// Brings the pins to where they are at this share of the way between two times; the free nodes
-// follow as the tangent spreads their motion. Returns the Hessian products.
+// Moves the pins to their positions at this share of the time between two times; the free nodes
+// follow by the tangent. Returns the number of Hessian products.
 int StaticSolver::move_pins_to(const Controls& controls, double start_time, double time,
                                double share, State& state) {
   Field move(state.position.size(), Vec3::Zero());
@@ -313,14 +315,14 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
   const double start_time = state.time;
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
   state.last_step = 0.0;
-  state.time = time;  // of the loads; the pins follow below
+  state.time = time;  // for the loads; the pins follow below
   const std::vector<Resting> resting =
       resting_groups(model_, controls, time, outer_forces(model_, controls, state));
   nudge_ = resting.empty() ? 0.0 : nudge(model_, controls);
   put_at_rest_shape(model_, find_tangled(model_, find_low_tets(model_, state.position)), state);
 
-  // The dead force makes the start of the solve a rest state, so that the way from there to the
-  // goal can be cut into small steps.
+  // The dead force makes the start of the solve a rest state, so the change to the new loads can be
+  // cut into small steps.
   Field dead_force = forces_.evaluate(controls, state).force;
   keep_free(model_, dead_force);
   put_down(model_, controls, resting, state);
@@ -328,7 +330,7 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
   const int turns =
       static_cast<int>(std::ceil(pins_turn(model_, start_time, time) / turn_per_load_step));
   double length = 1.0 / std::max({1, options.min_load_steps, turns});
-  bool gradual = options.min_load_steps > 1;  // outer forces too
+  bool gradual = options.min_load_steps > 1;  // outer forces are applied gradually too
   NewtonReport falls;
   int cuts = 0;
   double done = 0.0;
@@ -356,7 +358,7 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
       }
       return account(settle(objective, o, forces, state));
     };
-    // On the way it is enough to stay near the path.
+    // Before the last load step it is enough to stay near the path.
     const double tolerance = next < 1.0 ? std::max(options.tolerance, 1e-3) : options.tolerance;
     if ((!softened_ || newton(softened_->model, softened_->forces, 1e-2)) &&
         newton(model_, forces_, tolerance)) {

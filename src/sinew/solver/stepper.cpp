@@ -4,7 +4,7 @@
 
 namespace sinew {
 
-// One a stepper, each in the file of its steps: verlet_steps.cpp, implicit_steps.cpp ...
+// One per stepper, each in the file of its steps: verlet_steps.cpp, implicit_steps.cpp ...
 std::unique_ptr<Stepper> verlet_steps(const Model& model, const StepperOptions& options);
 std::unique_ptr<Stepper> implicit_steps(const Model& model, const StepperOptions& options);
 std::unique_ptr<Stepper> rest_steps(const Model& model, const StepperOptions& options);

@@ -1,7 +1,7 @@
-// The interface of all time steppers: one virtual call a step.
+// The interface of all time steppers: one virtual call per step.
 //
-// A new stepper is a class of its own (a .h and a .cpp), its word in solver/stepper_kind.h and a
-// line in make_stepper().
+// A new stepper is a class of its own (a .h and a .cpp), a word in solver/stepper_kind.h and a line
+// in make_stepper().
 #pragma once
 
 #include <atomic>
@@ -21,23 +21,23 @@ namespace sinew {
 
 // Conditions that end a step early.
 struct Interrupt {
-  Deadline deadline = {};                   // implicit steps: the iterate of that time is the step
-  const std::atomic<bool>* stop = nullptr;  // rest states: ends after the Newton step under way
+  Deadline deadline = {};                   // implicit steps: the current iterate becomes the step
+  const std::atomic<bool>* stop = nullptr;  // rest states: ends after the current Newton step
 };
 
-// What a stepper remembers from step to step beside the State. A checkpoint holds it.
+// The data that a stepper keeps between steps in addition to the State. A checkpoint holds them.
 struct StepMemory {
-  double stable_step = no_limit;    // when last estimated [s]; infinity: any step is stable
+  double stable_step = no_limit;    // at the last estimate [s]; infinity: any step is stable
   std::vector<Vec3> stiff_mode;     // the mode that limits the step (nodes)
   std::int64_t steps_to_watch = 0;  // steps until the stable step is estimated again
-  std::int64_t watch_interval = 0;  // steps from the last estimate to that one
+  std::int64_t watch_interval = 0;  // interval between the last estimate and that one
 };
 
-// What a stepper says about its steps before the first one.
+// The step lengths that a stepper reports before the first step.
 struct FirstStep {
   double stable = no_limit;   // the longest stable step [s]
-  double longest = no_limit;  // the longest step that it takes by itself [s]
-  std::string limited_by;     // what limits the stable step
+  double longest = no_limit;  // the longest step that it chooses itself [s]
+  std::string limited_by;     // the cause of the limit on the stable step
 };
 
 struct StepperOptions {
@@ -53,31 +53,31 @@ class Stepper {
   Stepper& operator=(const Stepper&) = delete;
   virtual ~Stepper() = default;
 
-  // Called once at the start of a run, not where a run goes on: fills the memory.
+  // Called once at the start of a run, but not when a run is resumed: fills the memory.
   virtual FirstStep begin(const Controls& controls, const State& state, StepMemory& memory) = 0;
 
-  // Advances the state by h [s] > 0. Throws Error(diverged) where that fails; the state is then the
+  // Advances the state by h [s] > 0. Throws Error(diverged) if that fails; the state is then the
   // broken one.
   virtual StepReport step(double h, const Controls& controls, const Interrupt& interrupt,
                           State& state, StepMemory& memory) = 0;
 
-  // Called before a step of length h [s], once or more often. Returns the stable step where it was
-  // estimated anew.
+  // Called before a step of length h [s], once or more often. Returns the stable step if it was
+  // estimated again.
   virtual std::optional<double> watch(double h, const Controls& controls, const State& state,
                                       StepMemory& memory);
 
-  // The longest stable step from here [s], with what the forces of the last step allow; infinity:
-  // any.
+  // The longest stable step from here [s], including the limit from the forces of the last step;
+  // infinity: any step is stable.
   virtual double stable_step(const StepMemory& memory) const { return memory.stable_step; }
 
   // Prepares steps of length h [s], before a deadline counts.
   virtual void prepare(double h, const Controls& controls);
 
-  // Whether steps lead to rest states: as long as the frame, whatever dt says.
+  // Whether steps lead to rest states: their length is the frame's, whatever dt is.
   virtual bool finds_rest() const { return false; }
 
-  // Evaluates forces in the precision of the steps, for measurements between them. No step depends
-  // on what was evaluated before it.
+  // Evaluates forces in the precision of the steps, for measurements between them. Earlier
+  // evaluations never affect a step.
   virtual ForceEvaluator& forces() = 0;
 };
 

@@ -1,4 +1,4 @@
-// Which method takes the steps, with the words that scenes have for it.
+// The time stepping methods and their names in scenes.
 #pragma once
 
 #include <array>
@@ -9,10 +9,10 @@
 namespace sinew {
 
 enum class StepperKind {
-  automatic,  // to be chosen (sim/choose_stepper.h)
+  automatic,  // chosen later (sim/choose_stepper.h)
   verlet,     // explicit steps (solver/verlet.h)
   implicit,   // implicit steps (solver/implicit.h)
-  rest,       // rest states, one a frame (solver/static.h)
+  rest,       // rest states, one per frame (solver/static.h)
 };
 constexpr std::array<Word<StepperKind>, 4> words_of(StepperKind) {
   return {{{StepperKind::verlet, "verlet"},
@@ -21,10 +21,10 @@ constexpr std::array<Word<StepperKind>, 4> words_of(StepperKind) {
            {StepperKind::automatic, "auto"}}};
 }
 
-// Of implicit steps.
+// The scheme of implicit steps.
 enum class Scheme {
   backward_euler,  // first order, damps every oscillation
-  sdirk2           // second order, hardly damps, two solves a step
+  sdirk2           // second order, hardly damps, two solves per step
 };
 constexpr std::array<Word<Scheme>, 2> words_of(Scheme) {
   return {{{Scheme::sdirk2, "sdirk2"}, {Scheme::backward_euler, "backward-euler"}}};

@@ -33,7 +33,7 @@ Edge sorted(Index a, Index b) {
   return a < b ? Edge{a, b} : Edge{b, a};
 }
 
-// A symmetric positive definite 3 x 3 matrix near m: m itself where it is one.
+// A symmetric positive definite 3 x 3 matrix near m; m itself if it is one.
 Mat3 definite(const Mat3& m) {
   const Mat3 s = 0.5 * (m + m.transpose());
   const double mean = s.trace() / 3.0;
@@ -111,7 +111,7 @@ void TangentMatrix::find_edges() {
   for (std::size_t s = 0; s < model_.springs.size(); ++s) {
     of_spring.push_back(acts(model_, s) ? edge_of(model_.springs[s][0], model_.springs[s][1]) : -1);
     if (of_spring[s] < 0 || model_.stiffness[s] > 0.0 || limited_[s] >= 0) continue;
-    edge_dashpot_[uz(of_spring[s])] += model_.damping[s];  // a dashpot alone
+    edge_dashpot_[uz(of_spring[s])] += model_.damping[s];  // only a dashpot
     of_spring[s] = -1;
   }
   sort_by_key(
@@ -205,7 +205,7 @@ void TangentMatrix::find_far_neighbours() {
 void TangentMatrix::find_cells() {
   cell_start_.push_back(0);
   part_start_.push_back(0);
-  std::vector<std::pair<Index, Part>> parts;  // node and what it gets
+  std::vector<std::pair<Index, Part>> parts;  // node and its part
   for (Index c = 0; c < model_.cell_count(); ++c) {
     parts.clear();
     for (Index k = model_.cell_start[uz(c)]; k < model_.cell_start[uz(c) + 1]; ++k) {
@@ -320,8 +320,8 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
   });
 }
 
-// What not every edge has in B_ab: tets that keep their own volume or turn over, springs, dashpots,
-// limits and viscosity.
+// The parts of B_ab that not every edge has: tets that keep their own volume or are inverted,
+// springs, dashpots, limits and viscosity.
 Mat3 TangentMatrix::rare_block(const Objective& objective, const Field& x, const TetState& tets,
                                std::size_t e) const {
   const Model& model = objective.model;
@@ -394,8 +394,8 @@ void TangentMatrix::add_joint(std::span<const Index> nodes, std::span<const doub
   joints_.push_back(joint);
 }
 
-// Contacts and the terms' elements; those of isotropic terms between nodes are among the far
-// neighbours.
+// Assembles contacts and the terms' elements; the far neighbours include those of isotropic terms
+// between nodes.
 void TangentMatrix::assemble_joints(const Objective& objective, const Field& x, double time) {
   joints_.clear();
   joint_node_.clear();

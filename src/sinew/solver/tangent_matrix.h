@@ -1,4 +1,4 @@
-// The second derivative of the objective, assembled once per Newton step so that the many products
+// The second derivative of the objective, assembled once per Newton step, so that the many products
 // of conjugate gradients are cheap. docs/methods/linear-solver.md.
 #pragma once
 
@@ -13,33 +13,34 @@
 
 namespace sinew {
 
-// K u, node by node, in the parts that the model's terms make it of:
+// K u, node by node, split by the terms of the model:
 //
 //   (K u)_i = D_i u_i + sum_j B_ij (u_i - u_j) + sum_j k_ij (u_i - u_j)
 //             + sum_c G_ci (kappa_c / V_c) sum_j G_cj . u_j + sum_p w_pi T_p sum_j w_pj u_j
 //
-// D: inertia, drag, elements of terms at one node. B: springs, dashpots, network and what a tet
-// does between the nodes of its edges. k: the network between nodes that share no edge. G_c: the
-// gradient of a cell's volume. T_p, w_p: block and weights of a contact or of a term's element
-// between nodes. Differences of u, so that moving all nodes alike feels none of the rounding of B.
+// D: inertia, drag, elements of terms at one node. B: springs, dashpots, network and the tets'
+// blocks between the nodes of their edges. k: the network between nodes that share no edge. G_c:
+// the gradient of a cell's volume. T_p, w_p: block and weights of a contact or of a term's element
+// between nodes. The products use differences of u, so a rigid translation is free of the rounding
+// errors of B.
 //
-// In single precision: a Newton direction needs few digits, and half the bytes are half the time.
-// The force that Newton's method brings to zero is in double precision.
+// In single precision: a Newton direction needs few digits, and half the bytes take half the time.
+// The force of Newton's method is in double precision.
 class TangentMatrix {
  public:
-  explicit TangentMatrix(const Model& model);  // which entries there are
+  explicit TangentMatrix(const Model& model);  // finds the sparsity
 
-  // Their values at positions x and `time` for objective.model: the constructor's, or one that
-  // differs from it in stiffness only. `tets` are those at x.
+  // Sets the values at positions x and `time` for objective.model: the constructor's model, or one
+  // that differs from it in stiffness only. `tets` are those at x.
   void assemble(const Objective& objective, const Field& x, double time, const TetState& tets);
 
-  // out = K u (nodes), 0 where the motion is given; u has to be 0 there. Returns u . K u.
+  // out = K u (nodes), 0 for prescribed motion; u must be 0 there. Returns u . K u.
   double times(const Field4& u, Field4& out) const;
 
-  // The inverse of K's diagonal block of each node [m/N] (nodes), 0 where the motion is given.
+  // The inverse of K's diagonal block of each node [m/N] (nodes), 0 for prescribed motion.
   const std::vector<Block3>& inverse_diagonal() const { return inverse_diagonal_; }
 
-  // Calls f(i, j, K_ij) for every block of K but those that come from cells, free nodes alone.
+  // Calls f(i, j, K_ij) for every block of K except those of cells; free nodes only.
   template <typename F>
   void for_each_block(const F& f) const;
   // Calls f(stiffness, nodes, gradients) for every cell: kappa_c / V_c, and G_c on the nodes.
@@ -56,7 +57,7 @@ class TangentMatrix {
   struct ViscousPair {
     Index cell, a, b;
   };
-  // What a corner of a tet adds to the gradient of a cell's volume.
+  // The contribution of a corner of a tet to the gradient of a cell's volume.
   struct Part {
     Index corner;  // 4 t + corner
     float share;   // of the tet in the cell [-]
@@ -82,21 +83,21 @@ class TangentMatrix {
   std::vector<std::array<Index, 2>> edge_entries_;  // of B_ab and B_ba (edges)
   std::vector<Index> edge_tet_start_;               // (edges + 1)
   std::vector<AroundEdge> edge_tets_;
-  Field4 lag_;                             // objective.lag, about one of the nodes [m] (nodes)
-  Field4 position_;                        // x, about one of the nodes [m] (nodes)
-  std::vector<float> tet_push_;            // s_t / 6 [Pa] (tets)
-  std::vector<double> tet_stiffness_;      // of tet_volume_stiffness [Pa] (tets)
-  std::vector<Index> edge_viscous_start_;  // (edges + 1), empty where nothing is viscous
+  Field4 lag_;                         // objective.lag, relative to one of the nodes [m] (nodes)
+  Field4 position_;                    // x, relative to one of the nodes [m] (nodes)
+  std::vector<float> tet_push_;        // s_t / 6 [Pa] (tets)
+  std::vector<double> tet_stiffness_;  // of tet_volume_stiffness [Pa] (tets)
+  std::vector<Index> edge_viscous_start_;  // (edges + 1), empty if nothing is viscous
   std::vector<ViscousPair> edge_viscous_;
   std::vector<Mat3> viscous_deformation_;  // F of the cells at objective.lag [-]
-  std::vector<double> edge_dashpot_;       // [N s/m] of the springs that are nothing else (edges)
+  std::vector<double> edge_dashpot_;       // [N s/m] of springs that are only dashpots (edges)
   std::vector<Index> edge_spring_start_, edge_springs_;  // spring ids (edges + 1)
 
   bool springs_pull_ = false;   // some spring has a stiffness
   std::vector<Index> limited_;  // index into model.limited, -1: none (springs)
 
   // Rows of the nodes.
-  std::vector<char> free_;                // 1 where the node moves (nodes)
+  std::vector<char> free_;                // 1 if the node is free (nodes)
   std::vector<Index> near_start_, near_;  // neighbours over edges (nodes + 1)
   std::vector<Float4> near_block_;        // B_ij [N/m], see near_column
   std::vector<Index> far_start_, far_;    // other neighbours by network and ties (nodes + 1)
@@ -107,14 +108,14 @@ class TangentMatrix {
 
   // Contacts, and elements of terms between nodes: sum_ab weight_a weight_b block.
   struct Joint {
-    Range parts;   // of joint_node_ and joint_weight_, nodes that move
+    Range parts;   // of joint_node_ and joint_weight_, free nodes
     Block3 block;  // [N/m]
   };
   std::vector<Joint> joints_;
   std::vector<Index> joint_node_;
   std::vector<float> joint_weight_;
-  std::vector<Mat3> joint_diagonal_;  // what they add to the diagonal [N/m] (nodes); empty: nothing
-  std::vector<Mat3> pull_;            // what elements of one node add [N/m] (nodes); empty: nothing
+  std::vector<Mat3> joint_diagonal_;  // their part of the diagonal [N/m] (nodes); empty: none
+  std::vector<Mat3> pull_;            // elements of one node [N/m] (nodes); empty: none
 
   // Cells.
   std::vector<Index> cell_start_, cell_node_;  // nodes of its tets (cells + 1)

@@ -1,7 +1,7 @@
 #include "sinew/solver/tangent_rows.h"
 
-// Every function below is compiled twice: for AVX2 and for what every processor has. Both add up in
-// the same order, so that they give the same bits.
+// Every function below is compiled twice: for AVX2 and for the baseline instruction set. Both sum
+// in the same order, so they give the same bits.
 #if defined(__x86_64__)
 #define SINEW_AVX2 __attribute__((target("avx2")))
 #define SINEW_HAS_AVX2 __builtin_cpu_supports("avx2")

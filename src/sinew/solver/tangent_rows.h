@@ -12,7 +12,7 @@ struct TangentRows {
   const char* free;          // (nodes)
   const Block3* own;         // D_i (nodes)
   const Index* near_start;   // all even (nodes + 1)
-  const Index* near;         // neighbours; a row of odd length is filled up with the node itself
+  const Index* near;         // neighbours; a row of odd length is padded with the node itself
   const Float4* near_block;  // columns of B_ij: column c of entry e at near_column(e, c)
   const Index* far_start;    // all even (nodes + 1)
   const Index* far;
@@ -26,7 +26,7 @@ struct TangentRows {
   const Float4* node_gradient;  // G_ci (as node_cell)
 };
 
-// Two entries lie side by side, so that their columns load at once.
+// Two entries are stored side by side, so that their columns load together.
 inline std::size_t near_column(std::size_t entry, std::size_t column) {
   return 6 * (entry / 2) + 2 * column + entry % 2;
 }

@@ -10,16 +10,16 @@
 namespace sinew {
 namespace {
 
-// Few enough groups that their system costs less than a product with K, enough that the iterations
-// do not grow with the mesh.
+// The number of groups is small enough that their system costs less than a product with K, and
+// large enough that the iterations do not grow with the mesh.
 constexpr Index smallest_group = 90;
 constexpr Index most_groups = 200;
 
-// What keeps the coarse matrix of a body that nothing holds from being singular, as a share of its
-// diagonal.
+// Share of the diagonal that is added, so that the coarse matrix of a body that nothing holds is
+// not singular.
 constexpr double touch = 1e-5;
 
-// For every free node its body and the region whose tets hold it stiffest.
+// The free nodes by body and by the region whose tets are stiffest at the node.
 std::map<std::pair<Index, int>, std::vector<Index>> nodes_by_region(const Model& model) {
   std::vector<std::map<int, double>> hold(model.rest_position.size());
   for (std::size_t t = 0; t < model.tets.size(); ++t) {
@@ -67,7 +67,7 @@ TwoLevel::TwoLevel(const Model& model, Index group_size) : model_(model) {
       spread += d * d.transpose();
     }
     spread /= static_cast<double>(nodes.size());
-    // Linear motions along the group's own axes; none along an axis in which it has no width.
+    // Linear motions along the group's principal axes; none along an axis without extent.
     const Eigen::SelfAdjointEigenSolver<Mat3> eigen(spread);
     for (const Index i : nodes) {
       group_[uz(i)] = static_cast<Index>(centre_.size());
@@ -110,7 +110,7 @@ void TwoLevel::factor(const TangentMatrix& rest) {
     }
   });
   using Row = Eigen::Matrix<double, coarse_size, 1>;
-  std::map<Index, Row> rate;  // of the cell's volume with the motions of a group
+  std::map<Index, Row> rate;  // of the cell's volume, for the motions of a group
   rest.for_each_cell(
       [&](double stiffness, std::span<const Index> nodes, std::span<const Float4> gradients) {
         rate.clear();

@@ -1,5 +1,5 @@
-// The preconditioner of Newton's linear systems: every node for itself, and groups of nodes that
-// move, turn and stretch together. docs/methods/linear-solver.md.
+// The preconditioner of Newton's linear systems: the diagonal block of every node, and affine
+// motions of groups of nodes. docs/methods/linear-solver.md.
 #pragma once
 
 #include <memory>
@@ -11,14 +11,14 @@
 
 namespace sinew {
 
-// P^-1 = D^-1 + R Q (Q^T K_0 Q)^-1 Q^T R^T: D the diagonal blocks of K as it is, Q the affine
+// P^-1 = D^-1 + R Q (Q^T K_0 Q)^-1 Q^T R^T: D the diagonal blocks of the current K, Q the affine
 // motions of each group about its rest shape, K_0 the tangent at rest, R the groups' rotations
-// since. So the small system is factored once and follows the body as it turns.
+// since then. So the small system is factored once and follows the body's rotation.
 class TwoLevel {
  public:
-  // Groups the free nodes: by body and by the stiffest region they belong to, then cut in halves
-  // across the longest side until each has at most `group_size` nodes.
-  explicit TwoLevel(const Model& model, Index group_size = 0);  // 0: by the number of nodes
+  // Groups the free nodes by body and by the stiffest region they belong to, then bisects the
+  // groups across the longest side until each has at most `group_size` nodes.
+  explicit TwoLevel(const Model& model, Index group_size = 0);  // 0: from the number of nodes
 
   // Factors Q^T K_0 Q of a tangent assembled at rest.
   void factor(const TangentMatrix& rest);
@@ -33,7 +33,7 @@ class TwoLevel {
 
  private:
   const Model& model_;
-  std::vector<Index> group_;            // of each node, -1: given motion (nodes)
+  std::vector<Index> group_;            // of each node, -1: prescribed motion (nodes)
   std::vector<Index> start_, nodes_;    // of each group (groups + 1)
   std::vector<Vec3> centre_;            // at rest [m] (groups)
   std::vector<Eigen::Vector4f> shape_;  // 1 and the three linear motions of each node [-] (nodes)

@@ -21,7 +21,7 @@ namespace {
 
 constexpr Index none = std::numeric_limits<Index>::max();
 
-// A node this far out [m] has run away: finite to the letter, and nothing that can be shown.
+// A node this far away [m] has run away: its position is finite, but cannot be displayed.
 constexpr double farthest = 1e9;
 
 // Moves the free nodes. Returns the first node that is not finite or has run away, or `none`.
@@ -39,7 +39,7 @@ Index move_free_nodes(const Model& model, const std::vector<Vec3>& force, double
   return none;
 }
 
-// Moves the pinned nodes along their paths; adds the work their motion does on the springs.
+// Moves the pinned nodes along their paths; adds the work of their motion.
 void move_pins(const Model& model, const std::vector<Vec3>& force, double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
   for (const Pin& pin : model.pins) {
@@ -56,7 +56,7 @@ void move_pins(const Model& model, const std::vector<Vec3>& force, double h, Sta
   }
 }
 
-// Work of the loads over the step, with v(t) = (w before + w after) / 2; called before the move.
+// Work of the loads in the step, with v(t) = (w before + w after) / 2; called before the move.
 void add_work_of_loads(const Model& model, const std::vector<Vec3>& force, double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
   for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& load) {
@@ -66,8 +66,9 @@ void add_work_of_loads(const Model& model, const std::vector<Vec3>& force, doubl
   });
 }
 
-// Work of the obstacles that follow a path over the step: their forces on the bodies times their
-// own way, with the velocity (c(t + h) - c(t - h_last)) / (h + h_last); called before the move.
+// Work of the obstacles that follow a path in the step: their forces on the bodies times their
+// displacement, with the velocity (c(t + h) - c(t - h_last)) / (h + h_last); called before the
+// move.
 void add_work_of_obstacles(const Model& model, double h, State& state) {
   bool moves = false;
   for (const Obstacle& o : model.obstacles) moves = moves || !o.path.keys.empty();
@@ -79,9 +80,9 @@ void add_work_of_obstacles(const Model& model, double h, State& state) {
     state.energy.work_in -= 0.5 * readings[c].force.dot(after[c] - before[c]);
 }
 
-// Lets the velocities follow positions that constraints have moved, and counts what that takes. The
-// impulses work on the mean of the velocities before and after the step, as in Verlet's own
-// balance: none where a taut spring just holds.
+// Makes the velocities follow positions that constraints have moved, and counts the energy. The
+// work of the impulses uses the mean of the velocities before and after the step, as in Verlet's
+// energy balance: it is 0 for a taut spring at rest.
 void follow_positions(const Model& model, const std::vector<Vec3>& force,
                       const std::vector<Vec3>& predicted, double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
@@ -95,7 +96,7 @@ void follow_positions(const Model& model, const std::vector<Vec3>& force,
   });
 }
 
-// Projects the limits, with hard planes as constraints among them; velocities follow.
+// Projects the limits, with hard planes as additional constraints; velocities follow.
 void enforce_limits(const Model& model, const std::vector<Vec3>& force, double h, State& state,
                     StepReport& report) {
   const std::vector<Vec3> predicted = state.position;
@@ -123,7 +124,7 @@ void enforce_volume(const Model& model, const std::vector<Vec3>& force, double h
   if (volume.projections > 0) follow_positions(model, force, predicted, h, state);
 }
 
-// The spring at the node that pulls hardest, or that is itself not finite.
+// The spring at the node with the largest force, or with a force that is not finite.
 Index suspect_spring(const Model& model, const State& state, Index node) {
   std::vector<Vec3> force;
   compute_spring_forces(model, state, force);

@@ -1,4 +1,5 @@
-// stepper = "verlet": explicit steps, with a watch on the longest stable one as the body deforms.
+// stepper = "verlet": explicit steps; the longest stable step is estimated again as the body
+// deforms.
 #include <algorithm>
 #include <cmath>
 
@@ -9,14 +10,14 @@
 namespace sinew {
 namespace {
 
-// Steps between two estimates of the stable step; an estimate costs about as much as two steps in
-// double precision, or as five in single. As long as the body is calm they grow, from the first to
-// the last; a body that stiffens or is moved calls for the first again.
+// Steps between two estimates of the stable step. An estimate costs about as much as two steps in
+// double precision, or five in single. The interval grows from the first value to the last while
+// the stable step hardly changes. If a body stiffens or is moved, it is reset to the first.
 constexpr std::int64_t first_watch = 6;
 constexpr std::int64_t last_watch = 48;
-constexpr double calm = 0.97;  // of the stable step is left since the last estimate, or more
+constexpr double calm = 0.97;  // hardly changed: this share of the last stable step, or more
 
-// Whether the path goes on anywhere between the times `from` and `to`.
+// Whether the path moves at any time between `from` and `to`.
 bool path_moves(const Path& path, double from, double to) {
   KeyFrame last;
   for (const KeyFrame& key : path.keys) {
@@ -28,7 +29,7 @@ bool path_moves(const Path& path, double from, double to) {
   return false;
 }
 
-// Whether pins or obstacles move anywhere between the times `from` and `to`.
+// Whether pins or obstacles move at any time between `from` and `to`.
 bool model_is_moved(const Model& model, double from, double to) {
   const auto goes_on = [&](const auto& thing) { return path_moves(thing.path, from, to); };
   return std::any_of(model.pins.begin(), model.pins.end(), goes_on) ||
@@ -83,8 +84,8 @@ class VerletSteps : public Stepper {
     return memory.stable_step;
   }
 
-  // The guard of tets about to turn over is stiffer than all the rest and acts at once: the stable
-  // step with it; infinity where it does not act.
+  // The stable step with the guard of tets close to inversion, which is stiffer than all other
+  // terms and acts at once; infinity if the guard does not act.
   double with_guard(double stable) const {
     const double omega2 = stepper_.guard_frequency2();
     if (omega2 == 0.0) return no_limit;

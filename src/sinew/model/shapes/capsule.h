@@ -35,7 +35,7 @@ struct Capsule {
     return turn.col(2).cwiseAbs() * half + Vec3::Constant(radius);
   }
   double farthest() const { return radius + half; }
-  // Both ends and the side, where they are as small as a sphere that has a rod.
+  // Both ends and the side, if the radius is small enough to slip between nodes (see Sphere::rods).
   std::vector<Rod> rods(double longest_edge) const {
     if (radius >= 2.0 * longest_edge) return {};
     const Vec3 end(0.0, 0.0, half);

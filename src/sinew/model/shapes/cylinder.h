@@ -35,7 +35,7 @@ struct Cylinder {
     return {distance, (side / distance) * out + (end / distance) * up, nearest};
   }
 
-  // The way is inside where it is within the side, x^2 + y^2 <= R^2, and between the ends.
+  // The path is inside between its crossings of the side, x^2 + y^2 <= R^2, and of the ends.
   std::optional<double> enters(const Vec3& q0, const Vec3& q1) const {
     double in = -1.0;
     double out = 1.0;
@@ -68,9 +68,10 @@ struct Cylinder {
   }
   double farthest() const { return std::hypot(radius, half); }
 
-  // The side, where it is small enough to go between nodes, and both rims. A rim is a polygon of
-  // rods, rounded by a tenth of the smaller of diameter and length. The rod of the side ends at the
-  // depth of the rims: a triangle that sinks in a little through a flat end does not cut its axis.
+  // The side, if its radius is small enough to slip between nodes, and both rims. A rim is a
+  // polygon of rods, rounded by a tenth of the smaller of diameter and length. The rod of the side
+  // ends at the depth of the rims, so a triangle that penetrates slightly through a flat end does
+  // not cut its axis.
   std::vector<Rod> rods(double longest_edge) const {
     constexpr int corners = 16;  // between them the polygon is inside by 2 % of the radius
     std::vector<Rod> all;

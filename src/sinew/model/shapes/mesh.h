@@ -1,5 +1,5 @@
 // A triangle mesh: triangles between nodes of the Model that a pin moves. It has no signed
-// distance; bodies touch its surface as they touch each other (contact/surfaces.h).
+// distance; bodies touch it as they touch each other (contact/surfaces.h).
 #pragma once
 
 #include <string_view>

@@ -13,8 +13,8 @@ struct Plane {
   static constexpr std::string_view takes = "normal rotation path";
   static Plane from(const Keys&) { return {}; }
 
-  // The gap is y exactly, measured from the origin: a node that slides along the plane does not
-  // change it by rounding.
+  // The gap is y exactly, measured from the origin: a node that slides along the plane has no
+  // rounding error in it.
   SurfacePoint surface(const Vec3& q) const {
     return {q.y(), Vec3::UnitY(), Vec3(q.x(), 0.0, q.z()), Vec3::Zero()};
   }

@@ -1,5 +1,5 @@
-// What round shapes share: the distance of a ball, and where a straight way enters a ball or an
-// infinite cylinder.
+// Functions that round shapes share: the distance from a ball, and the point where a straight path
+// enters a ball or an infinite cylinder.
 #pragma once
 
 #include <cmath>
@@ -17,9 +17,9 @@ inline SurfacePoint ball_surface(const Vec3& q, const Vec3& middle, double radiu
   return {length - radius, n, middle + radius * n};
 }
 
-// The share of the way from q0, which is outside, to q1 at which the ball is entered; none where it
-// is not. |q0 + s (q1 - q0) - middle|^2 = R^2, the smaller root. `mask` leaves out directions:
-// (1, 1, 0) is a cylinder along z.
+// The share of the path from q0, which is outside, to q1 at which it enters the ball; none if it
+// does not. |q0 + s (q1 - q0) - middle|^2 = R^2, the smaller root. `mask` removes directions: (1,
+// 1, 0) is a cylinder along z.
 inline std::optional<double> enters_round(const Vec3& q0, const Vec3& q1, const Vec3& middle,
                                           double radius, const Vec3& mask = Vec3::Ones()) {
   const Vec3 r = (q0 - middle).cwiseProduct(mask);

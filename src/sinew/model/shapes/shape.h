@@ -1,5 +1,5 @@
-// The list of the shapes of obstacles. A new shape is a file and an entry of `Shape`; code that has
-// no case for it does not compile (CONTRIBUTING.md).
+// The list of the shapes of obstacles. A new shape is a file and an entry of `Shape`; code that
+// does not handle it does not compile (CONTRIBUTING.md).
 #pragma once
 
 #include <concepts>
@@ -18,7 +18,7 @@ namespace sinew {
 using Shape = std::variant<shapes::Sphere, shapes::Plane, shapes::Capsule, shapes::Box,
                            shapes::Cylinder, shapes::Mesh>;
 
-// What a shape with a signed distance has, in its own frame [m]. Every such shape is convex.
+// The members of a shape with a signed distance, in its own frame [m]. Every such shape is convex.
 template <typename S>
 concept SolidShape = requires(const S& s, const Vec3& q, const Mat3& turn,
                               const shapes::Keys& keys) {
@@ -26,20 +26,21 @@ concept SolidShape = requires(const S& s, const Vec3& q, const Mat3& turn,
   { S::needs } -> std::convertible_to<std::string_view>;  // keys of the scene that it requires
   { S::takes } -> std::convertible_to<std::string_view>;  // keys that are optional
   { S::from(keys) } -> std::same_as<S>;
-  { s.surface(q) } -> std::same_as<shapes::SurfacePoint>;  // the surface as seen from q
-  // The time of impact in [0, 1] of the straight way from the first point, which is outside, to the
-  // second; none where the way does not enter.
+  { s.surface(q) } -> std::same_as<shapes::SurfacePoint>;  // the surface nearest to q
+  // The time of impact in [0, 1] on the straight path from the first point, which is outside, to
+  // the second; none if the path does not enter.
   { s.enters(q, q) } -> std::same_as<std::optional<double>>;
   { s.extent(turn) } -> std::convertible_to<Vec3>;  // half sides of its box along the world's axes
   { s.farthest() } -> std::same_as<double>;         // largest distance from its origin
   // Parts that may slip between the nodes of a surface whose longest edge is given.
   { s.rods(double{}) } -> std::same_as<std::vector<shapes::Rod>>;
-  // Triangles with no longer edge keep the rods out by their corners alone.
+  // For triangles whose edges are at most this long, the contacts of their nodes are enough: no
+  // rods.
   { s.smooth_to() } -> std::same_as<double>;
-  { s.sizes() } -> std::convertible_to<Vec3>;  // all its parameters: they go into the Model's hash
+  { s.sizes() } -> std::convertible_to<Vec3>;  // all parameters, for the Model's hash
 };
 
-// One function object of several, for std::visit.
+// Several function objects combined into one, for std::visit.
 template <typename... F>
 struct Overloaded : F... {
   using F::operator()...;
@@ -47,12 +48,12 @@ struct Overloaded : F... {
 template <typename... F>
 Overloaded(F...) -> Overloaded<F...>;
 
-// The word of a shape in scenes.
+// The name of a shape in scenes.
 inline std::string_view word_of(const Shape& shape) {
   return std::visit([](const auto& s) { return std::string_view(s.word); }, shape);
 }
 
-// Calls f(s) with a default of every shape of the list.
+// Calls f(s) with a default object of every shape of the list.
 template <typename F>
 void for_each_shape(const F& f) {
   [&]<std::size_t... i>(std::index_sequence<i...>) {

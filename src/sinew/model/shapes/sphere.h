@@ -19,8 +19,8 @@ struct Sphere {
   }
   Vec3 extent(const Mat3&) const { return Vec3::Constant(radius); }
   double farthest() const { return radius; }
-  // A larger sphere enters between the nodes of an edge by at most 9 % of its length: nodes keep it
-  // out.
+  // No rod for a larger sphere: it enters between the two nodes of an edge by at most 9 % of the
+  // edge's length, so the contacts of nodes are enough.
   std::vector<Rod> rods(double longest_edge) const {
     if (radius >= 2.0 * longest_edge) return {};
     return {{Vec3::Zero(), Vec3::Zero(), radius}};

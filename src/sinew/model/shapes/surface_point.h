@@ -1,5 +1,5 @@
-// The values that shapes of obstacles give and take. A shape is a struct of plain values in its own
-// frame; SolidShape in shape.h lists the members that it has.
+// The input and output values of the shapes of obstacles. A shape is a struct of plain values in
+// its own frame; SolidShape in shape.h lists its members.
 #pragma once
 
 #include <optional>
@@ -10,24 +10,24 @@
 
 namespace sinew::shapes {
 
-// The surface of a shape as seen from a point. Inside, the normal shows the shortest way out; where
-// several are equally short (the centre of a sphere) the choice is fixed.
+// The surface of a shape near a given point. For a point inside, the normal shows the shortest way
+// out; if several are equally short (the centre of a sphere), the choice is fixed.
 struct SurfacePoint {
   double distance = 0.0;        // [m] < 0: the point is inside
   Vec3 normal = Vec3::UnitY();  // [-] unit, outwards, of the surface at `nearest`
   Vec3 nearest = Vec3::Zero();  // [m] on the surface
-  Vec3 anchor = nearest;        // [m] on its tangent plane there, from where gaps are measured
+  Vec3 anchor = nearest;  // [m] on the tangent plane at `nearest`: gaps are measured from here
 };
 
-// A part of a shape that may slip between the nodes of a surface: what is within `radius` of the
-// segment from a to b [m], or a ball where both ends are one. Of a segment only what lies between
-// its ends counts: its ends are balls of their own.
+// A part of a shape that may slip between the nodes of a surface: all points within `radius` of the
+// segment from a to b [m], or a ball if a = b. Of a segment only the part between its ends counts:
+// the ends are separate balls.
 struct Rod {
   Vec3 a = Vec3::Zero(), b = Vec3::Zero();
   double radius = 0.0;
 };
 
-// The sizes that a scene gives for an obstacle, by key; 0 where it gives none.
+// The sizes of an obstacle in a scene, by key; 0 if a key is missing.
 struct Keys {
   double radius = 0.0;       // [m]
   double length = 0.0;       // [m]
