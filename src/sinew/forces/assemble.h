@@ -47,8 +47,9 @@ void add_attachment(Model& model, Index a, Index b, double stiffness, double dam
 // start, or, of a rope, no longer. length [m] > 0. Call after the last add_attachment.
 void add_distance(Model& model, Index a, Index b, double length, bool rope);
 
-// Derives inverse masses (0 for pinned nodes and anchors), the node -> spring lists and the
-// colouring of the limited springs. Throws Error(input) where a node is held by two pins.
+// Derives inverse masses (0 for pinned nodes and anchors), the node -> spring lists, the colouring
+// of the limited springs and the nodes' shares of the surface. Throws Error(input) where a node is
+// held by two pins.
 void finish(Model& model);
 
 }  // namespace sinew

@@ -36,12 +36,13 @@ class TangentProduct {
 class OuterProduct {
  public:
   // Everything has to outlive the object; `viscous_force` is scratch (slots).
-  OuterProduct(const Model& model, std::span<const Vec3> x, double a, double b,
-               std::span<const Vec3> u, Tangent tangent, std::vector<Vec3>& viscous_force);
+  OuterProduct(const Configuration& at, double a, double b, std::span<const Vec3> u,
+               Tangent tangent, std::vector<Vec3>& viscous_force);
   Vec3 of(Index node) const;
 
  private:
   const Model& model_;
+  const Controls& controls_;
   std::span<const Vec3> u_;
   const std::vector<Vec3>& viscous_force_;
   double a_, b_;
@@ -54,6 +55,6 @@ void add_term_products(const Configuration& at, Tangent tangent, double a, std::
                        std::span<Vec3> out);
 
 // The most that bounded terms stiffen the node [N/m].
-double most_stiffness(const Model& model, Index node);
+double most_stiffness(const Model& model, const Controls& controls, Index node);
 
 }  // namespace sinew

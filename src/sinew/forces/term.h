@@ -75,8 +75,8 @@ concept BlockTerm = requires(const Configuration& at, std::span<Vec3> forces) {
 // A term that may come to act on more nodes within a step gives, instead of its elements, the most
 // that it can stiffen a node [N/m] where the tangent counts only what stiffens.
 template <class T>
-concept Bounded = requires(const Model& model, Index node) {
-  { T::most_stiffness(model, node) } -> std::same_as<double>;
+concept Bounded = requires(const Model& model, const Controls& controls, Index node) {
+  { T::most_stiffness(model, controls, node) } -> std::same_as<double>;
 };
 
 // A term whose elements hold a body in its place in the world.

@@ -31,7 +31,7 @@ struct Body {
 struct Pin {
   std::string name;
   std::vector<Index> nodes;
-  Path path;
+  Path path;  // what Controls start with
 };
 
 // A force while it lasts: on a set of nodes, or by area on faces of the surface (forces/loads.h).
@@ -162,7 +162,8 @@ struct Model {
   std::vector<Probe> probes;
   std::vector<Obstacle> obstacles;    // those of the scene in its order, then its ground
   std::vector<double> surface_share;  // a third of the rest area of its surface triangles [m2]
-                                      // (nodes of bodies); empty where there are no soft obstacles
+                                      // (nodes of bodies), 0 inside: what soft obstacles and
+                                      // tools press
   Skin skin;                          // empty where there are no hard obstacles
   TouchSurface surface;               // what may touch; empty where nothing does
 

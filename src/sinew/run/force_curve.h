@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "sinew/model/controls.h"
 #include "sinew/model/model.h"
 
 namespace sinew {
@@ -14,6 +15,7 @@ std::string force_curve(const std::string& probes_csv, const std::string& obstac
 
 // Writes NAME-force.svg into the folder of a run, from its probes.csv, for every obstacle that
 // moves. Throws Error(io) where the system refuses to read or write.
-void write_force_curves(const std::filesystem::path& folder, const Model& model);
+void write_force_curves(const std::filesystem::path& folder, const Model& model,
+                        const Controls& controls);
 
 }  // namespace sinew

@@ -4,6 +4,7 @@
 #include <sinew/types.h>
 
 #include "sinew/base/vec.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/model.h"
 
 namespace sinew::sim {
@@ -19,8 +20,9 @@ inline Point point(const Vec3& v) {
 // `near`.
 Vec3 rotation_vector(const Mat3& rotation, const Vec3& near);
 
-// The pin that moves the nodes of an obstacle that is a mesh; null for others.
-Pin* pin_of(Model& model, const Obstacle& obstacle);
+// Gives the obstacle's path to the pin of its nodes as well, where it is a mesh. Call after the
+// path has changed.
+void let_pin_follow(Controls& controls, const Model& model, std::size_t obstacle);
 
 // Writes the path anew: up to `start` [s] as it was, as far back as a step of `last_step` [s]
 // looks; then to `to`, which is a motion about `pivot`, at constant speed until `end` > start; then

@@ -16,7 +16,7 @@ double touching_distance(const Model& model);
 // By obstacle that is listed. Soft: as the positions are (forces/obstacles.h). Hard: the force is
 // the mean over the last step, depth that of the deepest place inside, and places count that touch.
 // `finder`: of the model; null if nothing can touch (sim/world.h).
-std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
-                                            ContactFinder* finder);
+std::vector<ObstacleReading> read_obstacles(const Model& model, const Controls& controls,
+                                            const State& state, ContactFinder* finder);
 
 }  // namespace sinew

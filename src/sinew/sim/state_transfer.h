@@ -3,14 +3,16 @@
 
 #include <string>
 
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
 
 // The state as it goes on with `after`, whose bodies, pins and attachments have the same nodes.
 // Obstacles may have come or gone; the one named `replaced` starts anew. Contacts start cold.
+// `controls`: of `after`.
 State transfer_state(const Model& before, const State& old, const Model& after,
-                     const std::string& replaced);
+                     const Controls& controls, const std::string& replaced);
 
 // Takes from every body that becomes softer, by a ratio r < 1 of its mean shear modulus, the share
 // sqrt(r) of the speeds at which it deforms; how it moves and turns as a whole stays. A deformed

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/forces/volume.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/contact_constraints.h"
 
@@ -40,7 +41,8 @@ class Constraints {
 
   // Takes the multipliers from where the state's last step left them. `from`: where the step of
   // length `step` [s] and its slips start [m] (nodes); kept, and may be null without friction.
-  void start(const State& state, const std::vector<Vec3>* from, double step);
+  void start(const Controls& controls, const State& state, const std::vector<Vec3>* from,
+             double step);
 
   // --- the energy for the multipliers as they are; the tets are those at x ---
 
@@ -75,7 +77,8 @@ class Constraints {
   // --- the multipliers ---
 
   // Takes the pushes at x as the new multipliers; returns how far the old ones were off.
-  ConstraintError update(const std::vector<Vec3>& x, std::span<const double> tet_volume);
+  ConstraintError update(const Controls& controls, const std::vector<Vec3>& x,
+                         std::span<const double> tet_volume);
   // Multiplies every k; start() takes that back.
   void harden(double factor) {
     hardness_ *= factor;
