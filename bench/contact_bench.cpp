@@ -97,7 +97,8 @@ void AnswerToLyingBeams(benchmark::State& state) {
   ContactFinder finder(model);
   const double reach = finder.explicit_reach();
   std::vector<Contact> found;
-  finder.find(before, s.position, s.time, s.time + h, finder.explicit_reach(), found);
+  finder.find(initial_controls(model), before, s.position, s.time, s.time + h,
+              finder.explicit_reach(), found);
   if (state.range(1) == 0) s.reactions.contacts.clear();
   ContactScratch scratch;
   ContactReport answer;

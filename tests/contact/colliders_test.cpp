@@ -37,9 +37,11 @@ struct Scenery {
   }
   std::vector<Contact> find(double reach = 0.0, double t1 = 0.0) {
     std::vector<Contact> out;
-    find_collider_contacts(model, from, to, 0.0, t1, reach, out);
+    find_collider_contacts(model, initial_controls(model), from, to, 0.0, t1, reach, out);
     return out;
   }
+  // Of the first obstacle.
+  Pose pose(double time) const { return obstacle_pose(model, initial_controls(model), 0, time); }
   void move(const Vec3& before, const Vec3& after) {
     for (std::size_t i = 0; i < from.size(); ++i) {
       from[i] = model.rest_position[i] + before;
@@ -102,8 +104,8 @@ TEST(Colliders, AMovingTurningPlaneCarriesItsPoints) {
   Scenery s({plane});
   const auto contacts = s.find(0.0, 1.0);
   ASSERT_FALSE(contacts.empty());
-  const Pose before = obstacle_pose(plane, 0.0);
-  const Pose after = obstacle_pose(plane, 1.0);
+  const Pose before = s.pose(0.0);
+  const Pose after = s.pose(1.0);
   for (const Contact& c : contacts) {
     EXPECT_LT((c.normal - Vec3(-std::sin(0.1), std::cos(0.1), 0)).norm(), 1e-12);
     const Vec3 place = s.to[uz(c.node[0])] - c.gap * c.normal;  // on the plane
@@ -177,7 +179,7 @@ TEST(Colliders, NodesAsByBruteForce) {
       const double reach = 0.003;
       Index expected = 0;
       double depth = 0.0;
-      const Pose pose = obstacle_pose(o, 0.0);
+      const Pose pose = s.pose(0.0);
       for (const Index n : s.model.skin.nodes) {
         const double d = std::visit(
             Overloaded{
@@ -312,7 +314,7 @@ TEST(Colliders, ContactsWithAMeshHaveAnAnchorAndNoRigidNodes) {
   for (auto i = uz(model.body_node_count()); i < to.size(); ++i) to[i].y() += 0.002;
   std::vector<Contact> contacts;
   ContactFinder finder(model);
-  finder.find(from, to, 0.0, 1.0, 0.0, contacts);
+  finder.find(initial_controls(model), from, to, 0.0, 1.0, 0.0, contacts);
   EXPECT_EQ(count_of(contacts, 1), 25);
   for (const Contact& c : contacts) {
     EXPECT_EQ(c.id.obstacle(), 0);
@@ -344,7 +346,7 @@ TEST(Colliders, AVertexOfAMeshPushesATriangle) {
   for (auto i = uz(model.body_node_count()); i < to.size(); ++i) to[i].y() -= 0.003;
   std::vector<Contact> contacts;
   ContactFinder finder(model);
-  finder.find(from, to, 0.0, 1.0, 0.0, contacts);
+  finder.find(initial_controls(model), from, to, 0.0, 1.0, 0.0, contacts);
   ASSERT_EQ(contacts.size(), 1U);
   const Contact& c = contacts[0];
   EXPECT_EQ(c.count, 3);

@@ -54,7 +54,7 @@ struct Standing {
     state.reactions.contacts.push_back(p);
   }
   ContactReport step(ExplicitContacts& contacts) {
-    return contacts.step(before, force, step_length, state);
+    return contacts.step(initial_controls(model), before, force, step_length, state);
   }
   ContactReport step() {
     ExplicitContacts contacts(model);

@@ -33,7 +33,8 @@ struct Ball {
     state.half_velocity[0] += 0.5 * (state.last_step + h) * Vec3(0, -g, 0);
     state.position[0] += h * state.half_velocity[0];
     std::vector<Contact> found;
-    find_collider_contacts(model, before, state.position, 0.0, h, 0.0, found);
+    find_collider_contacts(model, initial_controls(model), before, state.position, 0.0, h, 0.0,
+                           found);
     const ContactReport r = solve_contacts(model, found, force, h, state, scratch);
     contacts += r.contacts;
     dissipated += r.dissipated;

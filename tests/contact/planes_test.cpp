@@ -24,7 +24,7 @@ TEST(Planes, AreHalfSpacesAsTheyAreAtATime) {
   const Model model = two_masses();
   for (const double time : {0.0, 0.25}) {
     int count = 0;
-    for_each_hard_plane(model, time, [&](const HalfSpace& plane) {
+    for_each_hard_plane(model, initial_controls(model), time, [&](const HalfSpace& plane) {
       ++count;
       EXPECT_EQ(plane.point, Vec3(0, time, 0));
       EXPECT_EQ(plane.normal, Vec3::UnitY());
@@ -37,10 +37,10 @@ TEST(Planes, AreHalfSpacesAsTheyAreAtATime) {
 TEST(Planes, LiftFreeNodesThatAreBelow) {
   const Model model = two_masses();
   std::vector<Vec3> x = model.rest_position;
-  EXPECT_EQ(lift_onto_planes(model, 0.5, x), 1);
+  EXPECT_EQ(lift_onto_planes(model, initial_controls(model), 0.5, x), 1);
   EXPECT_EQ(x[0], Vec3(1, 0.5, 2));
   EXPECT_EQ(x[1], Vec3(1, -0.3, 3));
-  EXPECT_EQ(lift_onto_planes(model, 0.5, x), 0);
+  EXPECT_EQ(lift_onto_planes(model, initial_controls(model), 0.5, x), 0);
 }
 
 }  // namespace

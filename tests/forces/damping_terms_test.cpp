@@ -27,13 +27,14 @@ struct Damped {
     for (Index i = 0; i < 8; i += 2) add_attachment(model, i, 26 - i, 30.0 + i, 2.0 + i, 0.08);
     model.pins.push_back({"base", test::nodes_at(model, 1, -0.05), {}});
     finish(model);
+    controls = test::weightless(model);
     x = test::shaken(model.rest_position, 0.006);
     v = test::scattered(x.size(), 0.5, 77);
   }
   Configuration at() const { return {model, controls, x}; }
 
   Model model;
-  Controls controls;
+  Controls controls = test::weightless(model);
   std::vector<Vec3> x, v;
 };
 

@@ -161,7 +161,7 @@ TEST(Obstacles, TheListOfTermsHasThem) {
 TEST(Obstacles, ReadingsAreTheReaction) {
   const Model m = pressed_box();
   const double time = 0.5;
-  const auto readings = read_obstacles(m, m.rest_position, time);
+  const auto readings = read_obstacles(test::at(m, m.rest_position, time));
   ASSERT_EQ(readings.size(), 2U);
   EXPECT_EQ(readings[0].name, "top");
   EXPECT_LT((readings[0].center - Vec3(0.01, 0.06, 0)).norm(), 1e-15);

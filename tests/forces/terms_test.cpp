@@ -113,7 +113,7 @@ TEST(Terms, ProductsRowSumsAndBoundsFollowFromTheElements) {
       EXPECT_LE(sum, rows[uz(i)] * (1.0 + 1e-12) + 1e-12) << i;
       if constexpr (Bounded<decltype(term)>) {
         EXPECT_LE((K.block<3, 3>(3 * i, 3 * i).operatorNorm()),
-                  term.most_stiffness(e.model, i) * (1.0 + 1e-12) + 1e-12);
+                  term.most_stiffness(e.model, e.controls, i) * (1.0 + 1e-12) + 1e-12);
       }
     }
   });

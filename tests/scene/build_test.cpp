@@ -234,7 +234,6 @@ TEST(Build, ObstaclesAreHardUnlessTheyHaveAStiffness) {
                         "normal = [-2, 0, 0]\n");
   ASSERT_EQ(m.obstacles.size(), 4U);
   for (const Obstacle& o : m.obstacles) EXPECT_TRUE(o.hard());
-  EXPECT_TRUE(m.surface_share.empty());
   EXPECT_FALSE(m.skin.triangles.empty());
   EXPECT_EQ(m.obstacles[0].friction, 0.5);
   const Obstacle& table = m.obstacles[1];

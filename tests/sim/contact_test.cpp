@@ -258,8 +258,11 @@ TEST(Contact, TheGroundAndAPlaneObstacleGiveTheSameBitsWithEveryStepper) {
     EXPECT_GT(ground.run.contacts, 0) << stepper;
     ContactFinder on_ground(ground.model);
     ContactFinder on_plane(obstacle.model);
-    EXPECT_EQ(read_obstacles(ground.model, ground.run.state, &on_ground).size(), 0U);
-    EXPECT_EQ(read_obstacles(obstacle.model, obstacle.run.state, &on_plane).size(), 1U);
+    EXPECT_EQ(read_obstacles(ground.model, ground.controls, ground.run.state, &on_ground).size(),
+              0U);
+    EXPECT_EQ(
+        read_obstacles(obstacle.model, obstacle.controls, obstacle.run.state, &on_plane).size(),
+        1U);
   }
 }
 

@@ -65,14 +65,15 @@ size = [0.1, 0.1, 0.1]
   old.reactions.contacts.resize(1);
   old.obstacle_force = {Vec3(1, 0, 0), Vec3(0, 2, 0)};
 
-  const State s = transfer_state(before, old, with(table), "");
+  const Model after = with(table);
+  const State s = transfer_state(before, old, after, initial_controls(after), "");
   EXPECT_EQ(s.position[3], old.position[3]);
   EXPECT_EQ(s.time, 0.5);
   EXPECT_EQ(s.step, 7);
   EXPECT_EQ(s.energy.work_in, 2.0);
   EXPECT_TRUE(s.reactions.contacts.empty());
   EXPECT_EQ(s.obstacle_force, (std::vector<Vec3>{Vec3(0, 2, 0)}));
-  const State replaced = transfer_state(before, old, before, "table");
+  const State replaced = transfer_state(before, old, before, initial_controls(before), "table");
   EXPECT_EQ(replaced.obstacle_force, (std::vector<Vec3>{Vec3(1, 0, 0), Vec3::Zero()}));
 }
 

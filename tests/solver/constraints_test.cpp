@@ -140,7 +140,7 @@ TEST(Constraints, ForceAndTangentAreTheDerivativesOfTheEnergy) {
   ASSERT_GT(c.model.limited.size(), 20U);
   ASSERT_TRUE(c.model.has_volume_limit);
   Constraints constraints(c.model, 3600.0, 60.0, true);
-  constraints.start(c.state, &c.from, 1.0 / 60.0);
+  constraints.start(initial_controls(c.model), c.state, &c.from, 1.0 / 60.0);
   std::vector<Vec3> u(c.from.size());
   for (std::size_t i = 0; i < u.size(); ++i) {
     u[i] = random_point(1000 + i) - Vec3::Constant(0.5);

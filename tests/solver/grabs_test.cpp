@@ -22,7 +22,9 @@ Model held_box() {
 Controls grabbing_hand(const Model& m) {
   Grab grab{{1, 13, 26}, {5.0, 20.0, 7.0}, {}, Vec3(0.1, 0.2, -0.1)};
   for (const Index node : grab.nodes) grab.offset.push_back(0.5 * m.rest_position[uz(node)]);
-  return {m.start_gravity, {grab}};
+  Controls controls = initial_controls(m);
+  controls.grabs = {grab};
+  return controls;
 }
 
 TEST(Grabs, VerletAndImplicitStepsCarryABodyToTheSameRest) {

@@ -286,7 +286,7 @@ TEST(Verlet, AMovingObstaclePressesAndItsWorkIsCounted) {
   const double h =
       0.5 * find_stable_step(m, initial_controls(m), s.position, stepper.forces()).step;
   while (s.time < 0.6) stepper.step(h, initial_controls(m), s);
-  const ObstacleReading ball = read_obstacles(m, s.position, s.time)[0];
+  const ObstacleReading ball = read_obstacles(configuration(m, initial_controls(m), s))[0];
   EXPECT_GT(ball.contacts, 3);
   EXPECT_GT(ball.force.y(), 1.0);
   EXPECT_LT(ball.depth, 2e-4);  // of 20 mm
@@ -313,7 +313,7 @@ TEST(Verlet, AnElasticImpactOnAnObstacleKeepsTheEnergy) {
     deepest = std::max(deepest, test::energies_at(m, initial_controls(m), s).contact);
   }
   EXPECT_GT(deepest, 1e-3 * start);
-  EXPECT_EQ(read_obstacles(m, s.position, s.time)[0].contacts, 0);
+  EXPECT_EQ(read_obstacles(configuration(m, initial_controls(m), s))[0].contacts, 0);
   EXPECT_GT(momentum(m, s).y(), 0.0);  // it came back
   EXPECT_NEAR(test::energies_at(m, initial_controls(m), s).total(), start, 0.02 * start);
 }

@@ -11,17 +11,18 @@
 
 namespace sinew::test {
 
-// One of each: springs, network, volume, a tie, a load, an obstacle, a grab.
+// Something of everything: springs, network, volume, a tie, a load, an obstacle, a tool, a grab.
 struct Everything {
   Everything() {
-    model = tissue_box({}, {2, 2, 2});
     for (Index i = 0; i + 1 < 8; i += 2) add_attachment(model, i, 26 - i, 30.0 + i, 0.0, 0.08);
     add_tie(model, 26, model.tets.front(), 40.0);
     model.loads.push_back({"push", {13, 14}, Vec3(0.1, -0.2, 0.3)});
     add_obstacle(model, soft_sphere("ball", Vec3(0.0, 0.08, 0.0), 0.05, 2e4));
     model.pins.push_back({"base", nodes_at(model, 1, -0.05), {}});
     finish(model);
+    controls = initial_controls(model);
     controls.gravity = Vec3(0.5, -9.0, 1.0);
+    controls.tools.push_back({Vec3(0.09, 0.01, 0.0), 0.05, 3e4, {}});
     controls.grabs.push_back(
         {{4, 13}, {7.0, 9.0}, {Vec3::Zero(), Vec3(0, 0.01, 0)}, Vec3(0.1, 0.2, 0.0)});
     x = model.rest_position;
@@ -42,8 +43,8 @@ struct Everything {
   }
 
   static constexpr double time = 0.3;
-  Model model;
-  Controls controls;
+  Model model = tissue_box({}, {2, 2, 2});
+  Controls controls = initial_controls(model);
   std::vector<Vec3> x;
 };
 

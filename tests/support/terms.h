@@ -5,10 +5,26 @@
 
 namespace sinew::test {
 
-// Without gravity and grabs. The model and the positions must outlive the result.
-inline Configuration at(const Model& model, std::span<const Vec3> x, double time = 0.0) {
-  static const Controls none;
-  return {model, none, x, time};
+// The controls that a model starts with, without gravity.
+inline Controls weightless(const Model& model) {
+  Controls controls = initial_controls(model);
+  controls.gravity = Vec3::Zero();
+  return controls;
+}
+
+// A configuration with weightless() controls of its own. The model and the positions have to live
+// on.
+struct OwnControls {
+  const Controls own;
+};
+struct At : private OwnControls, public Configuration {
+  At(const Model& model, std::span<const Vec3> x, double time)
+      : OwnControls{weightless(model)}, Configuration{model, own, x, time} {}
+  At(const At&) = delete;
+  At& operator=(const At&) = delete;
+};
+inline At at(const Model& model, std::span<const Vec3> x, double time = 0.0) {
+  return {model, x, time};
 }
 
 template <class T>

@@ -23,9 +23,14 @@ struct Moving {
 };
 
 template <SolidShape S>
-Moving<S> moving(const Obstacle& o, const S& shape, Index index, double t0, double t1,
-                 double reach) {
-  Moving<S> m{&o, &shape, index, obstacle_pose(o, t0), obstacle_pose(o, t1), {}};
+Moving<S> moving(const Model& model, const Controls& controls, const S& shape, Index index,
+                 double t0, double t1, double reach) {
+  Moving<S> m{&model.obstacles[uz(index)],
+              &shape,
+              index,
+              obstacle_pose(model, controls, index, t0),
+              obstacle_pose(model, controls, index, t1),
+              {}};
   const bool turns = !m.before.turn.isApprox(m.after.turn, 0.0);
   for (const Pose* pose : {&m.before, &m.after}) {
     // During a rotation the shape can reach beyond both end poses. The box of its bounding ball
@@ -267,14 +272,14 @@ void add_nodes(const Model& model, const Moving<shapes::Plane>& plane,
 
 }  // namespace
 
-void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
-                            const std::vector<Vec3>& to, double t0, double t1,
-                            const ContactReach& reach, std::vector<Contact>& out) {
+void find_collider_contacts(const Model& model, const Controls& controls,
+                            const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0,
+                            double t1, const ContactReach& reach, std::vector<Contact>& out) {
   out.clear();
   std::vector<Eigen::AlignedBox3d> boxes;
-  const auto find_with = [&]<SolidShape S>(const Obstacle& obstacle, const S& shape, Index index) {
+  const auto find_with = [&]<SolidShape S>(const S& shape, Index index) {
     if (boxes.empty()) boxes = boxes_of_bodies(model, from, to);
-    const auto m = moving(obstacle, shape, index, t0, t1, reach.near);
+    const auto m = moving(model, controls, shape, index, t0, t1, reach.near);
     for (std::size_t b = 0; b < boxes.size(); ++b) {
       if (!boxes[b].intersects(m.box)) continue;
       const Range own = model.skin.body_nodes[b];
@@ -287,22 +292,19 @@ void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
       add_triangles(model, m, b, boxes[b], from, to, reach.near, out);
     }
   };
-  const auto find_with_plane = [&](const Obstacle& obstacle, const shapes::Plane& shape,
-                                   Index index) {
-    add_nodes(model, moving(obstacle, shape, index, t0, t1, reach.plane), from, to, reach.plane,
-              out);
+  const auto find_with_plane = [&](const shapes::Plane& shape, Index index) {
+    add_nodes(model, moving(model, controls, shape, index, t0, t1, reach.plane), from, to,
+              reach.plane, out);
   };
   for (std::size_t o = 0; o < model.obstacles.size(); ++o) {
     const Obstacle& obstacle = model.obstacles[o];
     if (!obstacle.hard()) continue;
-    std::visit(Overloaded{[](const shapes::Mesh&) {},  // found by find_surfaces()
-                          [&](const shapes::Plane& shape) {
-                            find_with_plane(obstacle, shape, static_cast<Index>(o));
-                          },
-                          [&](const SolidShape auto& shape) {
-                            find_with(obstacle, shape, static_cast<Index>(o));
-                          }},
-               obstacle.shape);
+    std::visit(
+        Overloaded{
+            [](const shapes::Mesh&) {},  // a surface: find_surfaces() has it
+            [&](const shapes::Plane& shape) { find_with_plane(shape, static_cast<Index>(o)); },
+            [&](const SolidShape auto& shape) { find_with(shape, static_cast<Index>(o)); }},
+        obstacle.shape);
   }
   if (!std::is_sorted(out.begin(), out.end(), comes_before)) {
     std::sort(out.begin(), out.end(), comes_before);
@@ -349,22 +351,6 @@ void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
     out.id.owner = static_cast<Index>(found - model.obstacles.begin());
     c = out;
   }
-}
-
-ColliderReading read_collider(const Model& model, const Obstacle& obstacle,
-                              const std::vector<Vec3>& x, double time, double reach) {
-  ColliderReading reading;
-  const Pose pose = obstacle_pose(obstacle, time);
-  const auto read = [&](const SolidShape auto& shape) {
-    for (const Index node : model.skin.nodes) {
-      if (model.inverse_mass[uz(node)] == 0.0) continue;
-      const double distance = shape.surface(pose.own(x[uz(node)])).distance;
-      if (distance < reach) ++reading.contacts;
-      reading.depth = std::max(reading.depth, -distance);
-    }
-  };
-  std::visit(Overloaded{[](const shapes::Mesh&) {}, read}, obstacle.shape);
-  return reading;
 }
 
 }  // namespace sinew

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "sinew/contact/contact.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/model.h"
 
 namespace sinew {
@@ -14,7 +15,7 @@ namespace sinew {
 void build_skin(Model& model);
 
 // Contacts of a step from positions `from` at time t0 to `to` at time t1 [m] (nodes) with all hard
-// obstacles except meshes. They are written to `out` (which is cleared), sorted by id:
+// obstacles but meshes, where the controls have them, into `out` (which is cleared), sorted by id:
 //
 //   node against a shape: every node of the surface whose gap at `to` is below `reach` [m], and
 //     every node that entered or passed through the shape during the step, relative to the moving
@@ -27,23 +28,14 @@ void build_skin(Model& model);
 //
 // Nodes whose motion is prescribed and triangles without a free corner have no contacts. The result
 // depends on the arguments only.
-void find_collider_contacts(const Model& model, const std::vector<Vec3>& from,
-                            const std::vector<Vec3>& to, double t0, double t1,
-                            const ContactReach& reach, std::vector<Contact>& out);
+void find_collider_contacts(const Model& model, const Controls& controls,
+                            const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0,
+                            double t1, const ContactReach& reach, std::vector<Contact>& out);
 
 // Turns contacts between nodes of bodies and of rigid meshes (SurfaceContacts) into contacts with
 // an obstacle: `anchor` and `way` replace the mesh's nodes; friction and restitution are those of
 // the obstacle. Other contacts stay as they are.
 void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
                          const std::vector<Vec3>& to, std::vector<Contact>& contacts);
-
-// The depth of the deepest node inside an obstacle at positions x and a time [m] (0: none is
-// inside), and the number of nodes that are inside or within `reach` [m].
-struct ColliderReading {
-  double depth = 0.0;
-  Index contacts = 0;
-};
-ColliderReading read_collider(const Model& model, const Obstacle& obstacle,
-                              const std::vector<Vec3>& x, double time, double reach);
 
 }  // namespace sinew

@@ -44,10 +44,10 @@ bool ContactFinder::anything_to_find(const Model& model) {
                      [](const Obstacle& o) { return o.hard(); });
 }
 
-void ContactFinder::find_shapes(const std::vector<Vec3>& from, const std::vector<Vec3>& to,
-                                double t0, double t1, const ContactReach& reach,
-                                std::vector<Contact>& contacts) {
-  find_collider_contacts(model_, from, to, t0, t1, reach, contacts);
+void ContactFinder::find_shapes(const Controls& controls, const std::vector<Vec3>& from,
+                                const std::vector<Vec3>& to, double t0, double t1,
+                                const ContactReach& reach, std::vector<Contact>& contacts) {
+  find_collider_contacts(model_, controls, from, to, t0, t1, reach, contacts);
 }
 
 void ContactFinder::find_surfaces(const std::vector<Vec3>& from, const std::vector<Vec3>& to,
@@ -61,10 +61,11 @@ void ContactFinder::find_surfaces(const std::vector<Vec3>& from, const std::vect
   }
 }
 
-void ContactFinder::find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0,
-                         double t1, const ContactReach& reach, std::vector<Contact>& contacts) {
+void ContactFinder::find(const Controls& controls, const std::vector<Vec3>& from,
+                         const std::vector<Vec3>& to, double t0, double t1,
+                         const ContactReach& reach, std::vector<Contact>& contacts) {
   contacts.clear();
-  find_shapes(from, to, t0, t1, reach, contacts);
+  find_shapes(controls, from, to, t0, t1, reach, contacts);
   if (!surfaces_) return;
   find_surfaces(from, to, reach.near, part_);
   contacts.insert(contacts.end(), part_.begin(), part_.end());

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/contact/contact.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/model.h"
 
 namespace sinew {
@@ -25,19 +26,21 @@ class ContactFinder {
   // share a node.
   double explicit_reach() const { return explicit_reach_; }
 
-  // The find functions return the contacts of a step from positions `from` at time t0 to `to` at
-  // time t1 (nodes): pairs whose gap at `to` is below `reach` [m], and pairs that touched during
-  // the step. The contacts are sorted by id and depend on the model and the arguments only.
+  // The find functions give the contacts of a step from positions `from` at time t0 to `to` at time
+  // t1 (nodes), with obstacles where the controls have them: places whose gap at `to` is below
+  // `reach` [m], and places that met on the way. The contacts are sorted by id and depend on the
+  // model and the arguments only.
   //
   // Contacts with obstacles that have a shape; `contacts` is cleared.
-  void find_shapes(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0, double t1,
-                   const ContactReach& reach, std::vector<Contact>& contacts);
+  void find_shapes(const Controls& controls, const std::vector<Vec3>& from,
+                   const std::vector<Vec3>& to, double t0, double t1, const ContactReach& reach,
+                   std::vector<Contact>& contacts);
   // Contacts between surfaces of bodies and rigid meshes; `contacts` is cleared.
   void find_surfaces(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,
                      std::vector<Contact>& contacts);
   // All contacts; `contacts` is cleared.
-  void find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double t0, double t1,
-            const ContactReach& reach, std::vector<Contact>& contacts);
+  void find(const Controls& controls, const std::vector<Vec3>& from, const std::vector<Vec3>& to,
+            double t0, double t1, const ContactReach& reach, std::vector<Contact>& contacts);
 
  private:
   const Model& model_;

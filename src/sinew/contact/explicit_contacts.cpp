@@ -67,11 +67,12 @@ void ExplicitContacts::let_go(State& state) {
   }
 }
 
-void ExplicitContacts::find(const std::vector<Vec3>& before, const std::vector<Vec3>& force,
-                            double h, State& state) {
+void ExplicitContacts::find(const Controls& controls, const std::vector<Vec3>& before,
+                            const std::vector<Vec3>& force, double h, State& state) {
   const double reach = finder_.explicit_reach();
   const auto find_shapes = [&] {
-    finder_.find_shapes(before, state.position, state.time, state.time + h, reach, contacts_);
+    finder_.find_shapes(controls, before, state.position, state.time, state.time + h, reach,
+                        contacts_);
   };
   const auto find_surfaces = [&] {
     finder_.find_surfaces(before, state.position, reach, surfaces_);
@@ -108,9 +109,9 @@ void ExplicitContacts::find(const std::vector<Vec3>& before, const std::vector<V
   }
 }
 
-ContactReport ExplicitContacts::step(const std::vector<Vec3>& before,
+ContactReport ExplicitContacts::step(const Controls& controls, const std::vector<Vec3>& before,
                                      const std::vector<Vec3>& force, double h, State& state) {
-  find(before, force, h, state);
+  find(controls, before, force, h, state);
   state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
   const ContactReport report = solve_contacts(model_, contacts_, force, h, state, scratch_);
   state.energy.dissipated += report.dissipated;

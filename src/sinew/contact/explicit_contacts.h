@@ -6,6 +6,7 @@
 
 #include "sinew/contact/contact_finder.h"
 #include "sinew/contact/contact_solver.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/model.h"
 #include "sinew/model/state.h"
 #include "sinew/model/warm_start.h"
@@ -30,18 +31,18 @@ class ExplicitContacts {
   // are measured at the predicted positions. If a contact of the step before is missing, the
   // contacts of its kind are found again at the predicted positions.
   //
-  // Adds work and losses to state.energy. Writes the contact forces to state.reactions, from which
-  // the next step starts, and the forces of bodies on hard obstacles to state.obstacle_force.
-  ContactReport step(const std::vector<Vec3>& before, const std::vector<Vec3>& force, double h,
-                     State& state);
+  // Adds work and losses to state.energy. Writes the contact forces to state.reactions, where the
+  // next step starts, and the forces of bodies on hard obstacles to state.obstacle_force.
+  ContactReport step(const Controls& controls, const std::vector<Vec3>& before,
+                     const std::vector<Vec3>& force, double h, State& state);
 
   // The contacts that the last step() solved.
   const std::vector<Contact>& contacts() const { return contacts_; }
   ContactFinder& finder() { return finder_; }
 
  private:
-  void find(const std::vector<Vec3>& before, const std::vector<Vec3>& force, double h,
-            State& state);
+  void find(const Controls& controls, const std::vector<Vec3>& before,
+            const std::vector<Vec3>& force, double h, State& state);
   bool hold(const std::vector<Vec3>& before, const std::vector<Vec3>& force, double h,
             State& state);
   void let_go(State& state);

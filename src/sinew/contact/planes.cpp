@@ -4,9 +4,10 @@
 
 namespace sinew {
 
-Index lift_onto_planes(const Model& model, double time, std::vector<Vec3>& x) {
+Index lift_onto_planes(const Model& model, const Controls& controls, double time,
+                       std::vector<Vec3>& x) {
   Index lifted = 0;
-  for_each_hard_plane(model, time, [&](const HalfSpace& plane) {
+  for_each_hard_plane(model, controls, time, [&](const HalfSpace& plane) {
     lifted += parallel_reduce(
         model.body_node_count(), Index{0},
         [&](Range range) {

@@ -9,6 +9,7 @@
 #include "sinew/base/error.h"
 #include "sinew/forces/laws.h"
 #include "sinew/forces/network.h"
+#include "sinew/forces/obstacles.h"
 #include "sinew/forces/viscosity.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/coloring.h"
@@ -319,6 +320,7 @@ void finish(Model& model) {
   find_active_springs(model);
   list_springs_of_nodes(model);
   colour_limited_springs(model);
+  build_surface_share(model);
 }
 
 }  // namespace sinew

@@ -48,8 +48,9 @@ void add_attachment(Model& model, Index a, Index b, double stiffness, double dam
 // `length` or, for a rope, at most at `length` [m] > 0. Call after the last add_attachment.
 void add_distance(Model& model, Index a, Index b, double length, bool rope);
 
-// Derives inverse masses (0 for pinned nodes and anchors), the node -> spring lists and the
-// colouring of the limited springs. Throws Error(input) if two pins hold a node.
+// Derives inverse masses (0 for pinned nodes and anchors), the node -> spring lists, the colouring
+// of the limited springs and the nodes' shares of the surface. Throws Error(input) where a node is
+// held by two pins.
 void finish(Model& model);
 
 }  // namespace sinew

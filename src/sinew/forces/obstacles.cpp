@@ -17,15 +17,18 @@ void for_each_surface_node(const Model& model, const F& f) {
 
 }  // namespace
 
-void add_obstacle(Model& model, Obstacle obstacle) {
-  const bool hard = obstacle.hard();
-  model.obstacles.push_back(std::move(obstacle));
-  if (hard || !model.surface_share.empty()) return;
+void build_surface_share(Model& model) {
+  if (!model.surface_share.empty()) return;
   model.surface_share.assign(uz(model.body_node_count()), 0.0);
   for (const Triangle& t : build_surface(model.tets, model.body_node_count()).triangles) {
     const double third = area_vector(model.rest_position, t).norm() / 3.0;
     for (const Index corner : t) model.surface_share[uz(corner)] += third;
   }
+}
+
+void add_obstacle(Model& model, Obstacle obstacle) {
+  if (!obstacle.hard()) build_surface_share(model);
+  model.obstacles.push_back(std::move(obstacle));
 }
 
 void add_mesh_obstacle(Model& model, Obstacle obstacle, std::span<const Vec3> vertices,
@@ -48,55 +51,75 @@ void add_mesh_obstacle(Model& model, Obstacle obstacle, std::span<const Vec3> ve
   add_obstacle(model, std::move(obstacle));
 }
 
-std::vector<Vec3> obstacle_centers(const Model& model, double time) {
-  std::vector<Vec3> centers;
-  for (const Obstacle& o : model.obstacles) centers.push_back(o.path.at(time, o.center));
-  return centers;
+SoftSphere soft_sphere(const Model& model, const Controls& controls, std::size_t obstacle,
+                       double time) {
+  const Obstacle& o = model.obstacles[obstacle];
+  return {controls.obstacle_paths[obstacle].at(time, o.center), o.soft_radius(), o.stiffness};
+}
+
+SoftSphere soft_sphere(const Tool& tool, double time) {
+  return {tool.path.at(time, tool.center), tool.radius, tool.stiffness};
+}
+
+std::vector<SoftSphere> soft_spheres(const Model& model, const Controls& controls, double time) {
+  std::vector<SoftSphere> spheres;
+  for (std::size_t o = 0; o < model.obstacles.size(); ++o)
+    if (!model.obstacles[o].hard()) spheres.push_back(soft_sphere(model, controls, o, time));
+  for (const Tool& tool : controls.tools) spheres.push_back(soft_sphere(tool, time));
+  return spheres;
 }
 
 double ObstacleTerm::energy(const Configuration& at) {
   const Model& model = at.model;
-  const std::vector<Vec3> centers = obstacle_centers(model, at.time);
+  const std::vector<SoftSphere> spheres = soft_spheres(model, at.controls, at.time);
+  if (spheres.empty()) return 0.0;
   return parallel_sum(static_cast<Index>(model.surface_share.size()), [&](Index i) {
     const auto n = uz(i);
+    if (model.inverse_mass[n] == 0.0) return 0.0;
     double energy = 0.0;
-    for (std::size_t c = 0; c < centers.size() && model.inverse_mass[n] > 0.0; ++c) {
-      const Obstacle& o = model.obstacles[c];
-      energy += obstacle_energy(at.x[n] - centers[c], o.soft_radius(),
-                                o.stiffness * model.surface_share[n]);
-    }
+    for (const SoftSphere& s : spheres)
+      energy += obstacle_energy(at.x[n] - s.center, s.radius, s.stiffness * model.surface_share[n]);
     return energy;
   });
 }
 
 void ObstacleTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
   const Model& model = at.model;
-  const std::vector<Vec3> centers = obstacle_centers(model, at.time);
+  const std::vector<SoftSphere> spheres = soft_spheres(model, at.controls, at.time);
+  if (spheres.empty()) return;
   for_each_surface_node(model, [&](std::size_t n) {
-    for (std::size_t c = 0; c < centers.size(); ++c) {
-      const Obstacle& o = model.obstacles[c];
-      forces[n] += obstacle_push(at.x[n] - centers[c], o.soft_radius(),
-                                 o.stiffness * model.surface_share[n]);
-    }
+    for (const SoftSphere& s : spheres)
+      forces[n] +=
+          obstacle_push(at.x[n] - s.center, s.radius, s.stiffness * model.surface_share[n]);
   });
 }
 
-std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const Vec3> x,
-                                            double time) {
+SoftReading read_soft_sphere(const Model& model, const SoftSphere& sphere,
+                             std::span<const Vec3> x) {
+  SoftReading reading;
+  for_each_pressed(model, sphere, x, [&](std::size_t, const Vec3& r, const Vec3& push) {
+    reading.force -= push;
+    reading.depth = std::max(reading.depth, sphere.radius - r.norm());
+    ++reading.contacts;
+  });
+  return reading;
+}
+
+std::vector<ObstacleReading> read_obstacles(const Configuration& at) {
   std::vector<ObstacleReading> readings;
-  for (const Obstacle& o : model.obstacles) {
+  for (std::size_t o = 0; o < at.model.obstacles.size(); ++o) {
+    const Obstacle& obstacle = at.model.obstacles[o];
+    const Path& path = at.controls.obstacle_paths[o];
     ObstacleReading reading;
-    reading.name = o.name;
-    reading.center = o.path.at(time, o.center);
-    reading.travel = reading.center - o.path.at(0.0, o.center);
-    for (std::size_t n = 0; n < model.surface_share.size(); ++n) {
-      if (o.hard() || model.surface_share[n] == 0.0 || model.inverse_mass[n] == 0.0) continue;
-      const Vec3 r = x[n] - reading.center;
-      const double depth = o.soft_radius() - r.norm();
-      if (depth <= 0.0) continue;
-      reading.force -= obstacle_push(r, o.soft_radius(), o.stiffness * model.surface_share[n]);
-      reading.depth = std::max(reading.depth, depth);
-      ++reading.contacts;
+    reading.name = obstacle.name;
+    reading.center = path.at(at.time, obstacle.center);
+    reading.travel = reading.center - path.at(0.0, obstacle.center);
+    if (!obstacle.hard()) {
+      const SoftReading soft =
+          read_soft_sphere(at.model, soft_sphere(at.model, at.controls, o, at.time), at.x);
+      reading.force = soft.force;
+      reading.depth = soft.depth;
+      reading.contacts = soft.contacts;
     }
     readings.push_back(std::move(reading));
   }

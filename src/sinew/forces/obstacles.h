@@ -1,5 +1,5 @@
-// Soft obstacles: rigid, frictionless spheres that press on the surface of bodies. Hard obstacles
-// are contacts (contact/colliders.h) and have no forces here.
+// Soft spheres: soft obstacles and tools (model/controls.h), rigid and frictionless, that press on
+// the surface of bodies. Hard obstacles are contacts (contact/colliders.h); here they add nothing.
 // docs/methods/obstacles.md.
 //
 // A surface node at x whose share of the surface area at rest is A is pushed out of the sphere of
@@ -44,6 +44,10 @@ inline Vec3 obstacle_stiffness_times(const Vec3& r, double radius, double stiffn
   return stiffness * (along - (radius / distance - 1.0) * (u - along));
 }
 
+// What soft spheres press: Model::surface_share. Call after the last add_body; does nothing where
+// it is there already.
+void build_surface_share(Model& model);
+
 // Adds the obstacle to the model. Call after the last add_body.
 void add_obstacle(Model& model, Obstacle obstacle);
 
@@ -53,8 +57,18 @@ void add_obstacle(Model& model, Obstacle obstacle);
 void add_mesh_obstacle(Model& model, Obstacle obstacle, std::span<const Vec3> vertices,
                        std::span<const Triangle> triangles);
 
-// The centres of the obstacles at a time [m] (obstacles).
-std::vector<Vec3> obstacle_centers(const Model& model, double time);
+// A soft obstacle or a tool as it is at a time.
+struct SoftSphere {
+  Vec3 center = Vec3::Zero();  // [m]
+  double radius = 0.0;         // [m]
+  double stiffness = 0.0;      // [N/m3] pressure per depth
+};
+SoftSphere soft_sphere(const Model& model, const Controls& controls, std::size_t obstacle,
+                       double time);
+SoftSphere soft_sphere(const Tool& tool, double time);
+
+// All of them at a time [s]: the soft obstacles in the Model's order, then the tools.
+std::vector<SoftSphere> soft_spheres(const Model& model, const Controls& controls, double time);
 
 struct ObstacleTerm {
   static constexpr Account account = Account::contact;
@@ -62,44 +76,78 @@ struct ObstacleTerm {
 
   static double energy(const Configuration& at);
   static void add_forces(const Configuration& at, std::span<Vec3> forces);
-  // Visits one element for every node that an obstacle pushes.
+  // One for every node that a sphere presses.
   template <class F>
   static void for_each_element(const Configuration& at, Tangent tangent, const F& visit);
-  // Sum of k A of the obstacles; 0 off the surface. A step that is stable with it is stable for any
-  // nodes that the obstacles come to touch.
-  static double most_stiffness(const Model& model, Index node) {
+  // Sum of k A of the spheres; 0 but on the surface. A step that is stable with it is stable
+  // whichever nodes the spheres come to touch.
+  static double most_stiffness(const Model& model, const Controls& controls, Index node) {
     if (uz(node) >= model.surface_share.size()) return 0.0;
+    const double share = model.surface_share[uz(node)];
     double sum = 0.0;
-    for (const Obstacle& o : model.obstacles) sum += o.stiffness * model.surface_share[uz(node)];
+    for (const Obstacle& o : model.obstacles) sum += o.stiffness * share;
+    for (const Tool& tool : controls.tools) sum += tool.stiffness * share;
     return sum;
   }
 };
 
 template <class F>
 void ObstacleTerm::for_each_element(const Configuration& at, Tangent tangent, const F& visit) {
-  const std::vector<Vec3> centers = obstacle_centers(at.model, at.time);
-  for (std::size_t c = 0; c < centers.size(); ++c) {
-    const Obstacle& o = at.model.obstacles[c];
-    if (o.hard()) continue;
+  for (const SoftSphere& s : soft_spheres(at.model, at.controls, at.time)) {
     for (Index node = 0; node < static_cast<Index>(at.model.surface_share.size()); ++node) {
-      const double k = o.stiffness * at.model.surface_share[uz(node)];
-      const Vec3 r = at.x[uz(node)] - centers[c];
-      if (k == 0.0 || at.model.inverse_mass[uz(node)] == 0.0 || r.norm() >= o.soft_radius())
-        continue;
+      const double k = s.stiffness * at.model.surface_share[uz(node)];
+      const Vec3 r = at.x[uz(node)] - s.center;
+      if (k == 0.0 || at.model.inverse_mass[uz(node)] == 0.0 || r.norm() >= s.radius) continue;
       Mat3 block;
       for (int axis = 0; axis < 3; ++axis) {
-        block.col(axis) = obstacle_stiffness_times(r, o.soft_radius(), k, Vec3::Unit(axis),
+        block.col(axis) = obstacle_stiffness_times(r, s.radius, k, Vec3::Unit(axis),
                                                    tangent == Tangent::only_stiffening);
       }
       // Along r the stiffness is k, across it -k (R / |r| - 1).
-      const double norm = k * std::max(1.0, o.soft_radius() / r.norm() - 1.0);
+      const double norm = k * std::max(1.0, s.radius / r.norm() - 1.0);
       constexpr double one = 1.0;
       visit(Element{{&node, 1}, {&one, 1}, block, norm});
     }
   }
 }
 
-// The interaction of an obstacle and the bodies.
+// Calls f(node, r, push) for every node that the sphere presses at x [m] (nodes), rising: r from
+// its centre to the node [m], push on the node [N].
+template <class F>
+void for_each_pressed(const Model& model, const SoftSphere& sphere, std::span<const Vec3> x,
+                      const F& f) {
+  for (std::size_t n = 0; n < model.surface_share.size(); ++n) {
+    if (model.surface_share[n] == 0.0 || model.inverse_mass[n] == 0.0) continue;
+    const Vec3 r = x[n] - sphere.center;
+    if (sphere.radius - r.norm() <= 0.0) continue;
+    f(n, r, obstacle_push(r, sphere.radius, sphere.stiffness * model.surface_share[n]));
+  }
+}
+
+// What a sphere and the bodies do to each other.
+struct SoftReading {
+  Vec3 force = Vec3::Zero();  // of the bodies on the sphere [N]
+  double depth = 0.0;         // of the deepest node [m]
+  Index contacts = 0;         // nodes that it presses
+};
+SoftReading read_soft_sphere(const Model& model, const SoftSphere& sphere, std::span<const Vec3> x);
+
+// Calls f(work) for every sphere that moves from the time `from` to `to` [s]: the force of the
+// bodies on it, as all is at `now`, times its way [J].
+template <class F>
+void for_each_work_on_spheres(const Configuration& now, double from, double to, const F& f) {
+  const auto at = [&](double time) { return soft_spheres(now.model, now.controls, time); };
+  const std::vector<SoftSphere> spheres = at(now.time);
+  const std::vector<SoftSphere> before = at(from);
+  const std::vector<SoftSphere> after = at(to);
+  for (std::size_t s = 0; s < spheres.size(); ++s) {
+    const Vec3 way = after[s].center - before[s].center;
+    if (way.isZero(0.0)) continue;
+    f(read_soft_sphere(now.model, spheres[s], now.x).force.dot(way));
+  }
+}
+
+// What an obstacle and the bodies do to each other.
 struct ObstacleReading {
   std::string name;
   Vec3 center = Vec3::Zero();  // [m]
@@ -115,8 +163,7 @@ inline double against_travel(const ObstacleReading& reading) {
   return travel > 0.0 ? -reading.force.dot(reading.travel) / travel : 0.0;
 }
 
-// Name, centre and travel of all obstacles; force, depth and contacts of the soft ones.
-std::vector<ObstacleReading> read_obstacles(const Model& model, std::span<const Vec3> x,
-                                            double time);
+// Name, centre and travel of all; force, depth and contacts of those that are soft.
+std::vector<ObstacleReading> read_obstacles(const Configuration& at);
 
 }  // namespace sinew

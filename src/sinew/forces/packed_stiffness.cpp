@@ -60,13 +60,14 @@ void PackedStiffness::times(double a, double b, std::span<const Vec3> u, std::sp
   });
   packed_.compute_nearby(model_, state_);
   packed_.gather(out);
-  const OuterProduct outer(model_, x_, a, b, u, Tangent::only_stiffening, viscous_force_);
+  const Configuration at{model_, controls_, x_};
+  const OuterProduct outer(at, a, b, u, Tangent::only_stiffening, viscous_force_);
   parallel_for(model_.node_count(), [&](Index i) {
     const auto n = uz(i);
     out[n] = model_.inverse_mass[n] == 0.0 ? Vec3::Zero()
                                            : Vec3((base_force_[n] - out[n]) / s + outer.of(i));
   });
-  add_term_products({model_, controls_, x_}, Tangent::only_stiffening, a, u, out);
+  add_term_products(at, Tangent::only_stiffening, a, u, out);
 }
 
 }  // namespace sinew

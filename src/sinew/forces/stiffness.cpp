@@ -10,10 +10,10 @@
 
 namespace sinew {
 
-double most_stiffness(const Model& model, Index node) {
+double most_stiffness(const Model& model, const Controls& controls, Index node) {
   double sum = 0.0;
   for_each_type(Terms{}, [&](auto term) {
-    if constexpr (Bounded<decltype(term)>) sum += term.most_stiffness(model, node);
+    if constexpr (Bounded<decltype(term)>) sum += term.most_stiffness(model, controls, node);
   });
   return sum;
 }
@@ -57,7 +57,7 @@ void TangentProduct::sum(const Configuration& at, std::span<const Vec3> of_tets,
     });
   }
   const bool network = !model.network_start.empty() && a != 0.0;
-  const OuterProduct outer(model, x, a, b, u, tangent, viscous_force_);
+  const OuterProduct outer(at, a, b, u, tangent, viscous_force_);
   parallel_for(model.node_count(), [&](Index i) {
     const auto n = uz(i);
     out[n] = Vec3::Zero();
@@ -69,24 +69,25 @@ void TangentProduct::sum(const Configuration& at, std::span<const Vec3> of_tets,
   if (a != 0.0) add_term_products(at, tangent, a, u, out);
 }
 
-OuterProduct::OuterProduct(const Model& model, std::span<const Vec3> x, double a, double b,
-                           std::span<const Vec3> u, Tangent tangent,
-                           std::vector<Vec3>& viscous_force)
-    : model_(model),
+OuterProduct::OuterProduct(const Configuration& at, double a, double b, std::span<const Vec3> u,
+                           Tangent tangent, std::vector<Vec3>& viscous_force)
+    : model_(at.model),
+      controls_(at.controls),
       u_(u),
       viscous_force_(viscous_force),
       a_(a),
       b_(b),
-      viscous_(!model.tet_viscosity.empty() && b != 0.0),
-      bounded_(tangent == Tangent::only_stiffening && !model.obstacles.empty()) {
-  if (viscous_) compute_viscous_forces(model, x, u, viscous_force);
+      viscous_(!at.model.tet_viscosity.empty() && b != 0.0),
+      bounded_(tangent == Tangent::only_stiffening &&
+               !(at.model.obstacles.empty() && at.controls.tools.empty())) {
+  if (viscous_) compute_viscous_forces(at.model, at.x, u, viscous_force);
 }
 
 Vec3 OuterProduct::of(Index node) const {
   const Vec3& u = u_[uz(node)];
   Vec3 out = b_ * model_.drag[uz(node)] * model_.mass[uz(node)] * u;
   if (viscous_) out -= b_ * gather_viscous(model_, viscous_force_, node);
-  if (bounded_) out += a_ * most_stiffness(model_, node) * u;
+  if (bounded_) out += a_ * most_stiffness(model_, controls_, node) * u;
   return out;
 }
 

@@ -75,8 +75,8 @@ concept BlockTerm = requires(const Configuration& at, std::span<Vec3> forces) {
 // A term that may act on more nodes within a step. With only_stiffening it gives, instead of its
 // elements, the largest stiffness that it may add to a node [N/m].
 template <class T>
-concept Bounded = requires(const Model& model, Index node) {
-  { T::most_stiffness(model, node) } -> std::same_as<double>;
+concept Bounded = requires(const Model& model, const Controls& controls, Index node) {
+  { T::most_stiffness(model, controls, node) } -> std::same_as<double>;
 };
 
 // A term whose elements hold a body in place in the world.

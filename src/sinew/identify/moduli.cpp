@@ -61,7 +61,7 @@ Mat6 by_tractions(const BodySpec& body, double tolerance) {
       area[uz(model.tets[t][a])] += model.rest_volume[t] * g[a];
     }
   }
-  const Controls controls;  // no gravity
+  const Controls controls = initial_controls(model);
   StaticSolver solver(model);
   Mat6 compliance;
   for (int k = 0; k < 6; ++k) {
@@ -84,7 +84,8 @@ Mat6 by_tractions(const BodySpec& body, double tolerance) {
 Mat6 by_displacements(const BodySpec& body, double tolerance) {
   const Model held = body_alone(body, true);
   const Model free = body_alone(body, false);
-  const Controls controls;  // no gravity
+  const Controls holding = initial_controls(held);
+  const Controls nothing = initial_controls(free);
   StaticSolver solver(held);
   const TetState tets = compute_tet_state(free, free.rest_position);
   TangentProduct product;
@@ -94,9 +95,9 @@ Mat6 by_displacements(const BodySpec& body, double tolerance) {
     Field u(X.size());
     for (std::size_t a = 0; a < X.size(); ++a) u[a] = unit_strain(k) * X[a];
     const Field none(X.size(), Vec3::Zero());
-    solver.solve_tangent({held, controls, X}, none, tolerance, u);
+    solver.solve_tangent({held, holding, X}, none, tolerance, u);
     Field f(X.size());
-    product.times({free, controls, X}, tets, 1.0, 0.0, u, Tangent::full, f);
+    product.times({free, nothing, X}, tets, 1.0, 0.0, u, Tangent::full, f);
     Mat3 stress = Mat3::Zero();
     for (std::size_t a = 0; a < X.size(); ++a) stress += f[a] * X[a].transpose();
     stress = 0.5 * (stress + stress.transpose().eval()) / free.bodies[0].rest_volume;

@@ -21,8 +21,8 @@ double largest_modulus(const Model& model) {
   return most == model.tet_modulus.end() ? 0.0 : 3.0 * *most;
 }
 
-const Obstacle& obstacle_of(const sim::World& world, ObstacleHandle tool) {
-  return world.model().obstacles[world.index_of(tool)];
+const Tool& tool_of(const sim::World& world, sim::ToolHandle handle) {
+  return world.controls().tools[world.index_of(handle)];
 }
 
 }  // namespace
@@ -44,11 +44,7 @@ double Ball::pressure(const sim::World& world) const {
 void Ball::move(sim::World& world, const Vec3& point, double radius) {
   wished_ = point;
   wished_radius_ = radius;
-  if (!tool_) {
-    // Starts with a minimal stiffness: the admissible one follows from the model's surface shares,
-    // which exist once the tool is added.
-    tool_ = world.add_tool("the ball", point, smallest * radius, 1.0);
-  }
+  if (!tool_) tool_ = world.add_tool(point, smallest * radius, pressure(world));
   hold(world);
 }
 
@@ -59,22 +55,21 @@ void Ball::remove(sim::World& world) {
 
 void Ball::follow(sim::World& world, double interval, double size) {
   if (!tool_) return;
-  const Obstacle& ball = obstacle_of(world, *tool_);
+  const Tool& ball = tool_of(world, *tool_);
   const Vec3 here = ball.path.at(world.state().time, ball.center);
   const Vec3 to_go = wished_ - here;
   const double most = fastest * size * interval;
   const Vec3 there = to_go.norm() <= most ? wished_ : Vec3(here + most / to_go.norm() * to_go);
   const double growth = wished_radius_ * interval / growing_time;
-  const double radius =
-      std::clamp(wished_radius_, ball.soft_radius() - growth, ball.soft_radius() + growth);
-  world.lead(*tool_, {there, Mat3::Identity()}, interval);
+  const double radius = std::clamp(wished_radius_, ball.radius - growth, ball.radius + growth);
+  world.lead(*tool_, there, interval);
   world.reshape(*tool_, radius, stiffness_);
 }
 
 void Ball::hold(sim::World& world) {
   if (!tool_) return;
   stiffness_ = pressure(world);
-  world.reshape(*tool_, obstacle_of(world, *tool_).soft_radius(), stiffness_);
+  world.reshape(*tool_, tool_of(world, *tool_).radius, stiffness_);
 }
 
 Ball Ball::in(const sim::World& world) const {
@@ -85,11 +80,9 @@ Ball Ball::in(const sim::World& world) const {
 
 std::optional<SphereStatus> Ball::status(const sim::World& world) const {
   if (!tool_) return std::nullopt;
-  const std::size_t i = world.index_of(*tool_);
-  const ObstacleReading r =
-      read_obstacles(world.model(), world.state().position, world.state().time)[i];
-  return SphereStatus{r.center, world.model().obstacles[i].soft_radius(), r.force, r.contacts,
-                      Mat3::Identity()};
+  const SoftSphere ball = soft_sphere(tool_of(world, *tool_), world.state().time);
+  const SoftReading r = read_soft_sphere(world.model(), ball, world.state().position);
+  return SphereStatus{ball.center, ball.radius, r.force, r.contacts, Mat3::Identity()};
 }
 
 }  // namespace sinew::live

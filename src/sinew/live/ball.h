@@ -1,4 +1,4 @@
-// The ball tool of the live view: a tool (sim/world.h) that follows a pointer.
+// The ball tool of the live view: a tool (model/controls.h) that follows a pointer.
 //
 // It grows to its size within a tenth of a second and moves at a speed that tissue can follow, so a
 // ball that appears inside the tissue, or jumps, pushes it aside and does not tear it.
@@ -34,10 +34,10 @@ class Ball {
  private:
   double pressure(const sim::World& world) const;
 
-  std::optional<ObstacleHandle> tool_;  // none: there is no ball
-  Vec3 wished_ = Vec3::Zero();          // target [m]
-  double wished_radius_ = 0.0;          // target [m]
-  double stiffness_ = 0.0;              // [N/m3]
+  std::optional<sim::ToolHandle> tool_;  // none: the ball is not there
+  Vec3 wished_ = Vec3::Zero();           // [m]
+  double wished_radius_ = 0.0;           // [m]
+  double stiffness_ = 0.0;               // [N/m3]
 };
 
 }  // namespace sinew::live

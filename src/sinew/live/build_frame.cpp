@@ -27,27 +27,26 @@ std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& 
   return out;
 }
 
-std::vector<std::uint8_t> find_contacts(const Model& model, const State& state,
-                                        const Topology& topology, ContactFinder* finder) {
-  if (model.obstacles.empty() && finder == nullptr) return {};
-  const std::vector<Vec3> centers = obstacle_centers(model, state.time);
+std::vector<std::uint8_t> find_contacts(const Model& model, const Controls& controls,
+                                        const State& state, const Topology& topology,
+                                        ContactFinder* finder) {
+  const std::vector<SoftSphere> spheres = soft_spheres(model, controls, state.time);
+  if (spheres.empty() && finder == nullptr) return {};
   std::vector<std::uint8_t> marks(topology.node.size(), 0);
   parallel_for(static_cast<Index>(marks.size()), [&](Index i) {
     const auto n = uz(topology.node[uz(i)]);
     const Vec3& x = state.position[n];
     bool touches = false;
     const bool on_surface = n < model.surface_share.size() && model.surface_share[n] > 0.0;
-    for (std::size_t c = 0; c < centers.size() && on_surface; ++c) {
-      const Obstacle& o = model.obstacles[c];
-      touches = touches || (!o.hard() && (x - centers[c]).norm() < o.soft_radius());
-    }
+    for (std::size_t s = 0; s < spheres.size() && on_surface; ++s)
+      touches = touches || (x - spheres[s].center).norm() < spheres[s].radius;
     marks[uz(i)] = touches ? 1 : 0;
   });
   if (finder != nullptr) {
     const double reach =
         std::max(touch * static_cast<double>(topology.diagonal), finder->explicit_reach());
     std::vector<Contact> contacts;
-    finder->find(state.position, state.position, state.time, state.time, reach, contacts);
+    finder->find(controls, state.position, state.position, state.time, state.time, reach, contacts);
     std::vector<std::uint8_t> touched(model.rest_position.size(), 0);
     for (const Contact& c : contacts) {
       for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) {

@@ -261,11 +261,12 @@ Status Session::status() {
   for (const ProbeReading& p : read_probes(model(), run.state.position)) {
     s.probes.push_back(p.displacement);
   }
-  for (const ObstacleReading& o : read_obstacles(model(), run.state, world().finder())) {
-    if (s.obstacles.size() == world().scene().obstacles.size()) break;  // the ball comes last
-    const Obstacle& obstacle = model().obstacles[s.obstacles.size()];
-    const Mat3 turn = obstacle_pose(obstacle, run.state.time).turn;
-    s.obstacles.push_back({o.center, radius_around(obstacle), o.force, o.contacts, turn});
+  const Controls& controls = world().controls();
+  for (const ObstacleReading& o : read_obstacles(model(), controls, run.state, world().finder())) {
+    const auto i = static_cast<Index>(s.obstacles.size());
+    const Mat3 turn = obstacle_pose(model(), controls, i, run.state.time).turn;
+    const double radius = radius_around(model().obstacles[uz(i)]);
+    s.obstacles.push_back({o.center, radius, o.force, o.contacts, turn});
   }
   s.ball = ball_.status(world());
   if (other_) s.distance = distance_between(pair_.mine, pair_.others, model().body_node_count());
@@ -284,7 +285,7 @@ Frame Session::frame() {
   // Compared bodies are shown at the latest time that both have reached.
   f.position = gather(other_ ? pair_.mine : state.position, topology_->node);
   f.value = measure(quantity_, model(), state, *topology_);
-  f.contact = find_contacts(model(), state, *topology_, world().finder());
+  f.contact = find_contacts(model(), world().controls(), state, *topology_, world().finder());
   if (other_) {
     f.compared = gather(pair_.others, topology_->node);
     if (quantity_ == Quantity::distance) f.value = distances(f.position, f.compared);

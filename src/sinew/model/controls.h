@@ -6,6 +6,8 @@
 
 #include "sinew/base/vec.h"
 #include "sinew/model/model.h"
+#include "sinew/model/obstacle.h"
+#include "sinew/model/path.h"
 
 namespace sinew {
 
@@ -18,14 +20,44 @@ struct Grab {
   Vec3 target = Vec3::Zero();     // [m]
 };
 
-struct Controls {
-  Vec3 gravity = Vec3::Zero();  // [m/s2]
-  std::vector<Grab> grabs;
+// A sphere that presses as a soft obstacle does (forces/obstacles.h). It belongs to who steps the
+// run, not to the scene: such as the ball of the live view.
+struct Tool {
+  Vec3 center = Vec3::Zero();  // [m], before its path moves it
+  double radius = 0.0;         // [m]
+  double stiffness = 0.0;      // [N/m3] pressure per depth > 0
+  Path path = {};
 };
 
-// The Model's gravity and no grabs.
-inline Controls initial_controls(const Model& model) {
-  return {model.start_gravity, {}};
+// Made by initial_controls() alone: Controls have a path for every pin and obstacle of a Model.
+struct Controls {
+  Vec3 gravity = Vec3::Zero();       // [m/s2]
+  std::vector<Path> pin_paths;       // (Model::pins)
+  std::vector<Path> obstacle_paths;  // (Model::obstacles); of a mesh: that of its pin as well
+  std::vector<Tool> tools;
+  std::vector<Grab> grabs;
+
+ private:
+  Controls() = default;
+  friend Controls initial_controls(const Model& model);
+};
+
+// The Model's gravity and paths, no tool, and nothing grabbed.
+Controls initial_controls(const Model& model);
+
+// Where an obstacle of the Model is at a time [s].
+Pose obstacle_pose(const Model& model, const Controls& controls, Index obstacle, double time);
+
+// Whether f(path) holds for the path of any pin, obstacle or tool.
+template <typename F>
+bool any_path(const Controls& controls, const F& f) {
+  for (const Path& path : controls.pin_paths)
+    if (f(path)) return true;
+  for (const Path& path : controls.obstacle_paths)
+    if (f(path)) return true;
+  for (const Tool& tool : controls.tools)
+    if (f(tool.path)) return true;
+  return false;
 }
 
 }  // namespace sinew

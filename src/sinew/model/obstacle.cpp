@@ -4,11 +4,6 @@
 
 namespace sinew {
 
-Pose obstacle_pose(const Obstacle& obstacle, double time) {
-  return {obstacle.path.at(time, obstacle.center),
-          obstacle.path.rotation(time) * obstacle.rotation};
-}
-
 Obstacle make_ground(const Vec3& point, const Vec3& normal, double restitution, double friction) {
   Obstacle o;
   o.name = "the ground";

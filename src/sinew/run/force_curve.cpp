@@ -48,10 +48,12 @@ std::string force_curve(const std::string& probes_csv, const std::string& obstac
   return to_svg(plot);
 }
 
-void write_force_curves(const std::filesystem::path& folder, const Model& model) {
+void write_force_curves(const std::filesystem::path& folder, const Model& model,
+                        const Controls& controls) {
   std::string table;
-  for (const Obstacle& o : model.obstacles) {
-    if (o.path.keys.empty()) continue;
+  for (std::size_t i = 0; i < model.obstacles.size(); ++i) {
+    const Obstacle& o = model.obstacles[i];
+    if (controls.obstacle_paths[i].keys.empty()) continue;
     if (table.empty()) table = io::read_file(folder / "probes.csv");
     io::write_file(folder / (o.name + "-force.svg"), force_curve(table, o.name));
   }

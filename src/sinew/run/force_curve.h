@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "sinew/model/controls.h"
 #include "sinew/model/model.h"
 
 namespace sinew {
@@ -12,8 +13,9 @@ namespace sinew {
 // these values are left out; empty if the table lacks the columns.
 std::string force_curve(const std::string& probes_csv, const std::string& obstacle);
 
-// Writes NAME-force.svg into the folder of a run, from its probes.csv, for every moving obstacle.
-// Throws Error(io) if the system refuses to read or write.
-void write_force_curves(const std::filesystem::path& folder, const Model& model);
+// Writes NAME-force.svg into the folder of a run, from its probes.csv, for every obstacle that
+// moves. Throws Error(io) where the system refuses to read or write.
+void write_force_curves(const std::filesystem::path& folder, const Model& model,
+                        const Controls& controls);
 
 }  // namespace sinew

@@ -124,7 +124,7 @@ void Recorder::record(const Controls& controls, const RunState& run, const std::
     add(p.position);
     add(p.displacement);
   }
-  for (const ObstacleReading& o : read_obstacles(model_, run.state, finder)) {
+  for (const ObstacleReading& o : read_obstacles(model_, controls, run.state, finder)) {
     add(o.center);
     add(o.force);
     row += fmt::format(",{},{}", o.travel.norm(), against_travel(o));

@@ -172,7 +172,7 @@ class Runner {
           100.0 * tangled_share, run_.recovery_steps, run_.state.step));
     }
     if (!options_.out.empty()) {
-      write_force_curves(options_.out, world_.model());
+      write_force_curves(options_.out, world_.model(), world_.controls());
       io::write_file(options_.out / summary_name, to_json(s).dump(2) + "\n");
     }
     return s;

@@ -105,7 +105,7 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   if (scene.budget_ms) s.budget = summarize_budget(*scene.budget_ms, run);
   s.largest_cell_change = largest_cell_change(model, x);
   s.probes = read_probes(model, x);
-  s.obstacles = read_obstacles(model, run.state, finder);
+  s.obstacles = read_obstacles(model, controls, run.state, finder);
   return s;
 }
 

@@ -268,8 +268,9 @@ class Parts {
           o.stiffness.value_or(default_obstacle_stiffness(bodies_, obstacle.soft_radius()));
     add_obstacle(model_, std::move(obstacle));
     if (!o.soft) return build_skin(model_);
+    const Controls controls = initial_controls(model_);
     for (Index i = 0; i < model_.body_node_count(); ++i)
-      if (!std::isfinite(ObstacleTerm::most_stiffness(model_, i)))
+      if (!std::isfinite(ObstacleTerm::most_stiffness(model_, controls, i)))
         throw Error(ErrorKind::input,
                     fmt::format("[obstacle.{}] is too stiff to compute with", o.name),
                     "check its stiffness, and young and scale of the bodies; they are in SI units",

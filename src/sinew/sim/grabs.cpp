@@ -70,7 +70,7 @@ GrabHandle World::grab(Index node, double radius, const Vec3& target) {
   grab.stiffness.assign(grab.nodes.size(), 0.0);  // hold_grabs() sets it
   ++next_id_;
   grabs_.push_back(std::move(patch));
-  controls_.grabs.push_back(std::move(grab));
+  controls_->grabs.push_back(std::move(grab));
   hold_grabs();
   ++changes_;
   return {serial_, grabs_.back().id};
@@ -79,13 +79,13 @@ GrabHandle World::grab(Index node, double radius, const Vec3& target) {
 // Sets the stiffness of every grab. No node becomes so stiff that explicit steps must be shorter.
 // The change of the springs' energy counts as work put in, as for a moved target.
 void World::hold_grabs() {
-  const double before = grab_energy(*model_, controls_, run_.state);
+  const double before = grab_energy(*model_, *controls_, run_.state);
   const double stable = run_.memory.stable_step;
   for (std::size_t g = 0; g < grabs_.size(); ++g) {
-    Grab& grab = controls_.grabs[g];
+    Grab& grab = controls_->grabs[g];
     const Body& body = body_of(*model_, grab.nodes.front());
     const double all = std::max(stiffness_of_disc * mean_young(*model_, body) * grabs_[g].radius,
-                                weight_per_length(*model_, controls_.gravity, body));
+                                weight_per_length(*model_, controls_->gravity, body));
     for (std::size_t i = 0; i < grab.nodes.size(); ++i) {
       const double omega = 2.0 / stable;
       const double most = stable_share * model_->mass[uz(grab.nodes[i])] * omega * omega;
@@ -93,35 +93,35 @@ void World::hold_grabs() {
       grab.stiffness[i] = stable < no_limit ? std::min(k, most) : k;
     }
   }
-  run_.state.energy.work_in += grab_energy(*model_, controls_, run_.state) - before;
+  run_.state.energy.work_in += grab_energy(*model_, *controls_, run_.state) - before;
 }
 
 void World::move(GrabHandle handle, const Vec3& target) {
   const Busy busy(*this);
-  Grab& grab = controls_.grabs[index_of(handle)];
-  const double before = grab_energy(*model_, controls_, run_.state);
+  Grab& grab = controls_->grabs[index_of(handle)];
+  const double before = grab_energy(*model_, *controls_, run_.state);
   grab.target = target;
-  run_.state.energy.work_in += grab_energy(*model_, controls_, run_.state) - before;
+  run_.state.energy.work_in += grab_energy(*model_, *controls_, run_.state) - before;
   ++changes_;
 }
 
 void World::release(GrabHandle handle) {
   const Busy busy(*this);
   const auto at = static_cast<std::ptrdiff_t>(index_of(handle));
-  const double before = grab_energy(*model_, controls_, run_.state);
+  const double before = grab_energy(*model_, *controls_, run_.state);
   grabs_.erase(grabs_.begin() + at);
-  controls_.grabs.erase(controls_.grabs.begin() + at);
-  run_.state.energy.work_in += grab_energy(*model_, controls_, run_.state) - before;
+  controls_->grabs.erase(controls_->grabs.begin() + at);
+  run_.state.energy.work_in += grab_energy(*model_, *controls_, run_.state) - before;
   ++changes_;
 }
 
 Vec3 World::target(GrabHandle handle) const {
-  return controls_.grabs[index_of(handle)].target;
+  return controls_->grabs[index_of(handle)].target;
 }
 
 Vec3 World::held_at(GrabHandle handle) const {
   const std::size_t g = index_of(handle);
-  const Grab& grab = controls_.grabs[g];
+  const Grab& grab = controls_->grabs[g];
   Vec3 at = Vec3::Zero();
   for (std::size_t i = 0; i < grab.nodes.size(); ++i)
     at += grabs_[g].share[i] * (run_.state.position[uz(grab.nodes[i])] - grab.offset[i]);
@@ -129,7 +129,7 @@ Vec3 World::held_at(GrabHandle handle) const {
 }
 
 Vec3 World::pull(GrabHandle handle) const {
-  return grab_pull(*model_, controls_.grabs[index_of(handle)], run_.state.position);
+  return grab_pull(*model_, controls_->grabs[index_of(handle)], run_.state.position);
 }
 
 std::vector<GrabHandle> World::grabs() const {

@@ -84,14 +84,14 @@ std::size_t World::index_of(ObstacleHandle h) const {
 std::size_t World::index_of(PinHandle h) const {
   return index_in("pin", serial_, h.simulation_, h.id_, pins_);
 }
+std::size_t World::index_of(ToolHandle h) const {
+  return index_in("tool", serial_, h.simulation_, h.id_, tools_);
+}
 std::size_t World::index_of(GrabHandle h) const {
   return index_in("grab", serial_, h.simulation_, h.id_, grabs_);
 }
 std::size_t World::index_of(MaterialHandle h) const {
-  struct Numbered {
-    std::uint64_t id;
-  };
-  std::vector<Numbered> all(parts_.size());
+  std::vector<Named> all(parts_.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i].id = i + 1;
   return index_in("material", serial_, h.simulation_, h.id_, all);
 }

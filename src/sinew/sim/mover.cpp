@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace sinew::sim {
 
@@ -16,11 +17,24 @@ Vec3 rotation_vector(const Mat3& rotation, const Vec3& near) {
   return (turn.angle() + full * std::round((near.dot(axis) - turn.angle()) / full)) * axis;
 }
 
-Pin* pin_of(Model& model, const Obstacle& obstacle) {
-  if (obstacle.mesh() == nullptr) return nullptr;
-  for (Pin& pin : model.pins)
-    if (!pin.nodes.empty() && pin.nodes.front() == obstacle.nodes().begin) return &pin;
-  return nullptr;
+namespace {
+
+// The pin that moves the nodes of an obstacle that is a mesh, index into Model::pins; none for
+// others.
+std::optional<std::size_t> pin_of(const Model& model, const Obstacle& obstacle) {
+  if (obstacle.mesh() == nullptr) return std::nullopt;
+  for (std::size_t p = 0; p < model.pins.size(); ++p) {
+    const std::vector<Index>& nodes = model.pins[p].nodes;
+    if (!nodes.empty() && nodes.front() == obstacle.nodes().begin) return p;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+void let_pin_follow(Controls& controls, const Model& model, std::size_t obstacle) {
+  if (const auto pin = pin_of(model, model.obstacles[obstacle]))
+    controls.pin_paths[*pin] = controls.obstacle_paths[obstacle];
 }
 
 void lead_path(Path& path, const Vec3& pivot, const KeyFrame& to, double last_step, double start,

@@ -4,6 +4,7 @@
 #include <sinew/types.h>
 
 #include "sinew/base/vec.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/model.h"
 
 namespace sinew::sim {
@@ -19,8 +20,9 @@ inline Point point(const Vec3& v) {
 // nearest to `near`.
 Vec3 rotation_vector(const Mat3& rotation, const Vec3& near);
 
-// The pin that moves the nodes of a mesh obstacle; null for other obstacles.
-Pin* pin_of(Model& model, const Obstacle& obstacle);
+// Gives the obstacle's path to the pin of its nodes as well, where it is a mesh. Call after the
+// path has changed.
+void let_pin_follow(Controls& controls, const Model& model, std::size_t obstacle);
 
 // Replaces the keys of the path. The old motion is kept up to `start` [s], as far back as the last
 // step of length `last_step` [s] needs it; then the path leads to `to`, a motion about `pivot`, at

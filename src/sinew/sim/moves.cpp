@@ -1,30 +1,16 @@
-// Motion of gravity, obstacles, pins and the owner's tools in a World.
-#include "sinew/forces/obstacles.h"
+// What moves in a World: gravity, obstacles, pins, and the tools of its owner.
+#include "sinew/forces/terms.h"
 #include "sinew/sim/mover.h"
 #include "sinew/sim/world.h"
 
 namespace sinew::sim {
-namespace {
-
-double obstacle_energy_of(const Model& model, const State& state) {
-  return ObstacleTerm::energy({model, Controls{}, state.position, state.time});
-}
-
-}  // namespace
-
 void World::set_gravity(const Vec3& gravity) {
   const Busy busy(*this);
-  controls_.gravity = gravity;
+  controls_->gravity = gravity;
   ++changes_;
 }
 
-void World::set_path(std::size_t obstacle, const Path& path) {
-  Obstacle& o = model_->obstacles[obstacle];
-  o.path = path;
-  if (Pin* pin = pin_of(*model_, o)) pin->path = path;
-}
-
-// Starts the waiting moves; each takes `span` [s].
+// Begins the moves that wait: they take `span` [s].
 void World::start_moves(double span) {
   if (!moves_waiting_ || !(span > 0.0)) return;
   moves_waiting_ = false;
@@ -32,14 +18,14 @@ void World::start_moves(double span) {
   const double last = run_.state.last_step;
   for (std::size_t i = 0; i < obstacles_.size(); ++i) {
     if (!obstacles_[i].to) continue;
-    Obstacle& o = model_->obstacles[i];
-    lead_path(o.path, o.center, *obstacles_[i].to, last, now, now + span);
-    if (Pin* pin = pin_of(*model_, o)) pin->path = o.path;
+    lead_path(controls_->obstacle_paths[i], model_->obstacles[i].center, *obstacles_[i].to, last,
+              now, now + span);
+    let_pin_follow(*controls_, *model_, i);
     obstacles_[i].to.reset();
   }
   for (std::size_t i = 0; i < pins_.size(); ++i) {
     if (!pins_[i].to) continue;
-    Path& path = model_->pins[i].path;
+    Path& path = controls_->pin_paths[i];
     lead_path(path, path.pivot, *pins_[i].to, last, now, now + span);
     pins_[i].to.reset();
   }
@@ -48,9 +34,10 @@ void World::start_moves(double span) {
 // The motion about the obstacle's centre that takes it from its start to the pose.
 KeyFrame World::motion_to(std::size_t obstacle, const Pose& pose) const {
   const Obstacle& o = model_->obstacles[obstacle];
+  const Vec3 turn = controls_->obstacle_paths[obstacle].frame(run_.state.time).turn;
   KeyFrame to;
   to.move = pose.center - o.center;
-  to.turn = rotation_vector(pose.turn * o.rotation.transpose(), o.path.frame(run_.state.time).turn);
+  to.turn = rotation_vector(pose.turn * o.rotation.transpose(), turn);
   return to;
 }
 
@@ -68,22 +55,12 @@ void World::place(ObstacleHandle handle, const Pose& pose) {
   const Obstacle& o = model_->obstacles[i];
   obstacles_[i].held = true;
   obstacles_[i].to.reset();
-  set_path(i, Path{{motion_to(i, pose)}, o.center, false});
+  Path& path = controls_->obstacle_paths[i];
+  path = Path{{motion_to(i, pose)}, o.center, false};
+  let_pin_follow(*controls_, *model_, i);
   for (Index n = o.nodes().begin; n < o.nodes().end; ++n)
-    run_.state.position[uz(n)] = o.path.at(run_.state.time, model_->rest_position[uz(n)]);
+    run_.state.position[uz(n)] = path.at(run_.state.time, model_->rest_position[uz(n)]);
   ++changes_;
-}
-
-void World::lead(ObstacleHandle handle, const Pose& pose, double seconds) {
-  const Busy busy(*this);
-  const std::size_t i = index_of(handle);
-  const Obstacle& o = model_->obstacles[i];
-  obstacles_[i].held = true;
-  obstacles_[i].to.reset();
-  Path path = o.path;
-  const double now = run_.state.time;
-  lead_path(path, o.center, motion_to(i, pose), run_.state.last_step, now, now + seconds);
-  set_path(i, path);
 }
 
 void World::move(PinHandle handle, const RigidMotion& motion) {
@@ -96,42 +73,49 @@ void World::move(PinHandle handle, const RigidMotion& motion) {
 
 // ---- tools: a change of a tool's energy counts as work put in ----
 
-ObstacleHandle World::add_tool(const std::string& name, const Vec3& center, double radius,
-                               double stiffness) {
-  const Busy busy(*this);
-  const double before = obstacle_energy_of(*model_, run_.state);
-  Obstacle tool;
-  tool.name = name;
-  tool.center = center;
-  tool.shape = shapes::Sphere{radius};
-  tool.stiffness = stiffness;
-  tool.path.pivot = center;
-  add_obstacle(*model_, std::move(tool));
-  obstacles_.push_back({next_id_++, name, true, {}, true});
-  run_.state.energy.work_in += obstacle_energy_of(*model_, run_.state) - before;
-  ++changes_;
-  return {serial_, obstacles_.back().id};
-}
-
-void World::reshape(ObstacleHandle handle, double radius, double stiffness) {
-  const Busy busy(*this);
-  Obstacle& tool = model_->obstacles[index_of(handle)];
-  const double before = obstacle_energy_of(*model_, run_.state);
-  tool.shape = shapes::Sphere{radius};
-  tool.stiffness = stiffness;
-  run_.state.energy.work_in += obstacle_energy_of(*model_, run_.state) - before;
+template <typename F>
+void World::change_tools(const F& change) {
+  const auto energy = [&] {
+    return ObstacleTerm::energy(configuration(*model_, *controls_, run_.state));
+  };
+  const double before = energy();
+  change(controls_->tools);
+  run_.state.energy.work_in += energy() - before;
   ++changes_;
 }
 
-void World::remove_tool(std::size_t obstacle) {
-  const auto at = static_cast<std::ptrdiff_t>(obstacle);
-  const double before = obstacle_energy_of(*model_, run_.state);
-  model_->obstacles.erase(model_->obstacles.begin() + at);
-  obstacles_.erase(obstacles_.begin() + at);
-  std::vector<Vec3>& force = run_.state.obstacle_force;
-  if (obstacle < force.size()) force.erase(force.begin() + at);
-  run_.state.energy.work_in += obstacle_energy_of(*model_, run_.state) - before;
-  ++changes_;
+ToolHandle World::add_tool(const Vec3& center, double radius, double stiffness) {
+  const Busy busy(*this);
+  change_tools([&](std::vector<Tool>& tools) {
+    tools.push_back({center, radius, stiffness, {{}, center, false}});
+  });
+  tools_.push_back({next_id_++});
+  return {serial_, tools_.back().id};
+}
+
+void World::lead(ToolHandle handle, const Vec3& center, double seconds) {
+  const Busy busy(*this);
+  Tool& tool = controls_->tools[index_of(handle)];
+  const double now = run_.state.time;
+  KeyFrame to;
+  to.move = center - tool.center;
+  lead_path(tool.path, tool.center, to, run_.state.last_step, now, now + seconds);
+}
+
+void World::reshape(ToolHandle handle, double radius, double stiffness) {
+  const Busy busy(*this);
+  const std::size_t i = index_of(handle);
+  change_tools([&](std::vector<Tool>& tools) {
+    tools[i].radius = radius;
+    tools[i].stiffness = stiffness;
+  });
+}
+
+void World::remove(ToolHandle handle) {
+  const Busy busy(*this);
+  const auto at = static_cast<std::ptrdiff_t>(index_of(handle));
+  change_tools([&](std::vector<Tool>& tools) { tools.erase(tools.begin() + at); });
+  tools_.erase(tools_.begin() + at);
 }
 
 }  // namespace sinew::sim

@@ -16,15 +16,15 @@ double touching_distance(const Model& model) {
 namespace {
 
 // Fills in force, depth and contacts of hard obstacles.
-void read_hard(const Model& model, const State& state, ContactFinder* finder,
-               std::vector<ObstacleReading>& readings) {
+void read_hard(const Model& model, const Controls& controls, const State& state,
+               ContactFinder* finder, std::vector<ObstacleReading>& readings) {
   for (std::size_t o = 0; o < readings.size() && o < state.obstacle_force.size(); ++o)
     if (model.obstacles[o].hard()) readings[o].force = state.obstacle_force[o];
 
   std::vector<Contact> contacts;
   if (finder != nullptr)
-    finder->find(state.position, state.position, state.time, state.time, touching_distance(model),
-                 contacts);
+    finder->find(controls, state.position, state.position, state.time, state.time,
+                 touching_distance(model), contacts);
   for (const Contact& c : contacts) {
     const Index obstacle = c.id.obstacle();
     if (obstacle < 0) continue;
@@ -36,12 +36,13 @@ void read_hard(const Model& model, const State& state, ContactFinder* finder,
 
 }  // namespace
 
-std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
-                                            ContactFinder* finder) {
-  std::vector<ObstacleReading> readings = read_obstacles(model, state.position, state.time);
+std::vector<ObstacleReading> read_obstacles(const Model& model, const Controls& controls,
+                                            const State& state, ContactFinder* finder) {
+  std::vector<ObstacleReading> readings =
+      read_obstacles({model, controls, state.position, state.time});
   const bool hard = std::any_of(model.obstacles.begin(), model.obstacles.end(),
                                 [](const Obstacle& o) { return o.hard() && o.listed; });
-  if (hard) read_hard(model, state, finder, readings);
+  if (hard) read_hard(model, controls, state, finder, readings);
   for (std::size_t o = readings.size(); o-- > 0;) {
     if (!model.obstacles[o].listed)
       readings.erase(readings.begin() + static_cast<std::ptrdiff_t>(o));

@@ -13,11 +13,10 @@ namespace sinew {
 // bodies' surfaces.
 double touching_distance(const Model& model);
 
-// The readings of the listed obstacles, in their order. Soft obstacles: at the current positions
-// (forces/obstacles.h). Hard obstacles: the mean force over the last step, the depth of the deepest
-// contact, and the number of contacts. `finder`: of the model; null if nothing can touch
-// (sim/world.h).
-std::vector<ObstacleReading> read_obstacles(const Model& model, const State& state,
-                                            ContactFinder* finder);
+// By obstacle that is listed. Soft: as the positions are (forces/obstacles.h). Hard: the force is
+// the mean over the last step, depth that of the deepest place inside, and places count that touch.
+// `finder`: of the model; null if nothing can touch (sim/world.h).
+std::vector<ObstacleReading> read_obstacles(const Model& model, const Controls& controls,
+                                            const State& state, ContactFinder* finder);
 
 }  // namespace sinew

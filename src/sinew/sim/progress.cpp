@@ -44,8 +44,8 @@ bool World::step() {
   const Busy busy(*this);
   bool finished = false;
   guarded([&] {
-    start_moves(stepping_->prepare(controls_, run_));
-    finished = stepping_->step(controls_, run_);
+    start_moves(stepping_->prepare(*controls_, run_));
+    finished = stepping_->step(*controls_, run_);
     if (finished) end_frame();
   });
   clock_ = run_.state.time;
@@ -55,9 +55,9 @@ bool World::step() {
 void World::step(double dt) {
   const Busy busy(*this);
   guarded([&] {
-    stepping_->require_stable(controls_, run_, dt);
+    stepping_->require_stable(*controls_, run_, dt);
     start_moves(dt);
-    stepping_->take_step(controls_, run_, dt);
+    stepping_->take_step(*controls_, run_, dt);
     end_frame();
   });
   clock_ = run_.state.time;
@@ -70,7 +70,7 @@ bool World::advance(double seconds) {
   guarded([&] {
     start_moves(end - run_.state.time);
     while (true) {
-      const Stepping::Progress progress = stepping_->advance_to(controls_, run_, end, &stop_);
+      const Stepping::Progress progress = stepping_->advance_to(*controls_, run_, end, &stop_);
       if (progress == Stepping::Progress::frame) end_frame();
       if (progress == Stepping::Progress::arrived) return;
       stopped = stop_.exchange(false);
@@ -88,7 +88,7 @@ bool World::advance_frame(const std::atomic<bool>* stop, Clock::time_point deadl
   guarded([&] {
     bool goes_on = true;
     while (goes_on) {
-      finished = stepping_->step(controls_, run_, stop);
+      finished = stepping_->step(*controls_, run_, stop);
       goes_on = !finished && (stop == nullptr || !stop->load()) && Clock::now() < deadline;
     }
   });

@@ -9,6 +9,7 @@
 #include "sinew/base/error.h"
 #include "sinew/sim/bytes.h"
 #include "sinew/sim/checkpoint.h"
+#include "sinew/sim/mover.h"
 #include "sinew/sim/readings.h"
 #include "sinew/sim/world.h"
 
@@ -53,23 +54,24 @@ std::string World::save() const {
   w.value(static_cast<std::uint64_t>(run.size()));
   w.bytes += run;
   w.value(clock_);
-  w.vec(controls_.gravity);
-  const auto movers = [&](const std::vector<Mover>& all, const auto& things) {
+  w.vec(controls_->gravity);
+  const auto movers = [&](const std::vector<Mover>& all, const std::vector<Path>& paths) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       w.value(all[i].held);
-      write_path(w, things[i].path);
+      write_path(w, paths[i]);
       w.value(all[i].to.has_value());
       const KeyFrame to = all[i].to.value_or(KeyFrame{});
       w.vec(to.move);
       w.vec(to.turn);
     }
   };
-  movers(obstacles_, model_->obstacles);
-  movers(pins_, model_->pins);
+  movers(obstacles_, controls_->obstacle_paths);
+  movers(pins_, controls_->pin_paths);
+  for (const Tool& tool : controls_->tools) write_path(w, tool.path);
   w.value(next_id_);
   w.value(static_cast<std::uint64_t>(grabs_.size()));
   for (std::size_t g = 0; g < grabs_.size(); ++g) {
-    const Grab& t = controls_.grabs[g];
+    const Grab& t = controls_->grabs[g];
     w.value(grabs_[g].id);
     w.value(grabs_[g].radius);
     w.vec(t.target);
@@ -112,27 +114,30 @@ void World::restore(const std::string& bytes) {
   r.vec(gravity);
   std::vector<Mover> obstacles = obstacles_;
   std::vector<Mover> pins = pins_;
-  std::vector<Path> paths(obstacles.size() + pins.size());
-  const auto movers = [&](std::vector<Mover>& all, std::size_t first) {
+  Controls controls = *controls_;
+  controls.gravity = gravity;
+  const auto movers = [&](std::vector<Mover>& all, std::vector<Path>& paths) {
     for (std::size_t i = 0; i < all.size(); ++i) {
       bool goes = false;
       KeyFrame to;
       r.value(all[i].held);
-      read_path(r, paths[first + i]);
+      read_path(r, paths[i]);
       r.value(goes);
       r.vec(to.move);
       r.vec(to.turn);
       all[i].to = goes ? std::optional(to) : std::nullopt;
     }
   };
-  movers(obstacles, 0);
-  movers(pins, obstacles.size());
+  movers(obstacles, controls.obstacle_paths);
+  movers(pins, controls.pin_paths);
+  for (std::size_t i = 0; i < obstacles.size(); ++i) let_pin_follow(controls, *model_, i);
+  for (Tool& tool : controls.tools) read_path(r, tool.path);
   std::uint64_t next_id = 0;
   r.value(next_id);
   std::vector<Patch> grabs(r.count(48));
-  std::vector<Grab> springs(grabs.size());
+  controls.grabs.assign(grabs.size(), {});
   for (std::size_t g = 0; g < grabs.size(); ++g) {
-    Grab& t = springs[g];
+    Grab& t = controls.grabs[g];
     r.value(grabs[g].id);
     r.value(grabs[g].radius);
     r.vec(t.target);
@@ -156,16 +161,12 @@ void World::restore(const std::string& bytes) {
   run_ = std::move(run);
   good_ = run_;
   clock_ = clock;
-  controls_.gravity = gravity;
+  controls_ = std::move(controls);
   obstacles_ = std::move(obstacles);
   pins_ = std::move(pins);
   moves_waiting_ = true;
-  for (std::size_t i = 0; i < obstacles_.size(); ++i) set_path(i, paths[i]);
-  for (std::size_t i = 0; i < pins_.size(); ++i)
-    model_->pins[i].path = paths[obstacles_.size() + i];
   next_id_ = std::max(next_id_, next_id);
   grabs_ = std::move(grabs);
-  controls_.grabs = std::move(springs);
   last_inverted_ = count_inverted(*model_, run_.state.position);
   ++changes_;
 }

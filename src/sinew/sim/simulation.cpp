@@ -257,7 +257,8 @@ void Simulation::place(ObstacleHandle handle, const RigidPose& to) {
 
 RigidPose Simulation::pose(ObstacleHandle handle) const {
   const sim::World& w = world();
-  const Pose now = obstacle_pose(w.model().obstacles[w.index_of(handle)], w.state().time);
+  const Pose now = obstacle_pose(w.model(), w.controls(), static_cast<Index>(w.index_of(handle)),
+                                 w.state().time);
   const Eigen::Quaterniond q(now.turn);
   return {sim::point(now.center), {q.w(), q.x(), q.y(), q.z()}};
 }
@@ -297,7 +298,7 @@ void Simulation::move(PinHandle handle, const RigidMotion& to) {
 }
 RigidMotion Simulation::motion(PinHandle handle) const {
   const sim::World& w = world();
-  const KeyFrame now = w.model().pins[w.index_of(handle)].path.frame(w.state().time);
+  const KeyFrame now = w.controls().pin_paths[w.index_of(handle)].frame(w.state().time);
   return {sim::point(now.move), sim::point(now.turn)};
 }
 Wrench Simulation::wrench(PinHandle handle, const Point& about) const {

@@ -62,10 +62,10 @@ const Obstacle* obstacle_named(const Model& model, const std::string& name) {
   return found == model.obstacles.end() ? nullptr : &*found;
 }
 
-// The nodes of mesh obstacles come last. Those of obstacles that stay keep their state; those of
-// others are at the start of their paths.
+// Nodes of obstacles that are meshes come last: those that stay keep their places, the others are
+// where the controls have them.
 State transfer_state(const Model& before, const State& old, const Model& after,
-                     const std::string& replaced) {
+                     const Controls& controls, const std::string& replaced) {
   State s = initial_state(after);
   const auto common = own_nodes(after);
   std::copy_n(old.position.begin(), common, s.position.begin());
@@ -87,7 +87,7 @@ State transfer_state(const Model& before, const State& old, const Model& after,
                   s.half_velocity.begin() + now.nodes().begin);
     } else {
       for (Index i = now.nodes().begin; i < now.nodes().end; ++i)
-        s.position[uz(i)] = now.path.at(s.time, after.rest_position[uz(i)]);
+        s.position[uz(i)] = controls.obstacle_paths[o].at(s.time, after.rest_position[uz(i)]);
     }
   }
   return s;

@@ -3,14 +3,16 @@
 
 #include <string>
 
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
 
-// The state for `after`, whose bodies, pins and attachments have the same nodes. Obstacles may have
-// been added or removed; the one named `replaced` starts anew. Contacts have no warm start.
+// The state as it goes on with `after`, whose bodies, pins and attachments have the same nodes.
+// Obstacles may have come or gone; the one named `replaced` starts anew. Contacts start cold.
+// `controls`: of `after`.
 State transfer_state(const Model& before, const State& old, const Model& after,
-                     const std::string& replaced);
+                     const Controls& controls, const std::string& replaced);
 
 // Reduces the deformation speeds of every body that becomes softer, by the factor sqrt(r), with r
 // the ratio of its mean shear moduli, below 1. Its rigid motion does not change. The amplitude of

@@ -38,14 +38,10 @@ double typed_step(double h) {
       Location{options.file});
 }
 
-// Rest states differ from frame to frame only where pins, loads or obstacles change with time.
-bool changes_with_time(const Model& model) {
-  for (const Obstacle& o : model.obstacles) {
-    if (!o.path.keys.empty()) return true;
-  }
-  for (const Pin& pin : model.pins) {
-    if (!pin.path.keys.empty()) return true;
-  }
+// Rest states differ from frame to frame only where pins, loads, obstacles or tools change with
+// time.
+bool changes_with_time(const Model& model, const Controls& controls) {
+  if (any_path(controls, [](const Path& path) { return !path.keys.empty(); })) return true;
   for (const Load& load : model.loads) {
     if (load.start > 0.0 || load.ramp > 0.0 || load.end < no_limit) return true;
   }
@@ -63,7 +59,7 @@ Stepping::Stepping(const SteppingOptions& options, const Model& model, const Con
   if (rest) options_.dt.reset();  // rest states have no step length
   if (options_.dt) options_.interval = std::max(options_.interval, options_.given());
   frame_interval_ = options_.interval;
-  if (rest && !changes_with_time(model) && options_.duration < no_limit) {
+  if (rest && !changes_with_time(model, controls) && options_.duration < no_limit) {
     options_.interval = options_.duration;
   }
   frames_ = count_frames(options_.duration, options_.interval);

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "sinew/base/error.h"
-#include "sinew/forces/obstacles.h"
 #include "sinew/mesh/surface.h"
 #include "sinew/scene/overrides.h"
 #include "sinew/scene/parse.h"
@@ -66,6 +65,7 @@ World::Built World::build(Source source) {
   b.source = std::move(source);
   b.model = std::make_unique<Model>(build_model(b.source.scene, &b.report));
   b.hash = b.model->hash();
+  b.controls = initial_controls(*b.model);
   return b;
 }
 
@@ -80,6 +80,7 @@ void World::take(Built built) {
   finder_.reset();
   evaluator_.reset();
   model_ = std::move(built.model);
+  controls_ = std::move(built.controls);
   model_hash_ = built.hash;
   run_ = std::move(built.run);
   warnings_ = warnings_of(source_.scene, report_);
@@ -111,12 +112,10 @@ void World::start(Source source) {
   } else {
     b.run.state = initial_state(*b.model);
   }
-  controls_ = initial_controls(*b.model);
-  b.stepping = std::make_unique<Stepping>(options_of(b.source.scene), *b.model, controls_, b.run);
-  for (const Obstacle& o : b.model->obstacles) b.obstacles.push_back({0, o.name, false, {}, false});
+  b.stepping = std::make_unique<Stepping>(options_of(b.source.scene), *b.model, *b.controls, b.run);
+  for (const Obstacle& o : b.model->obstacles) b.obstacles.push_back({0, o.name, false, {}});
   take(std::move(b));
-  for (const ScenePin& p : source_.scene.pins)
-    pins_.push_back({next_id_++, p.name, false, {}, false});
+  for (const ScenePin& p : source_.scene.pins) pins_.push_back({next_id_++, p.name, false, {}});
   for (const SceneBody& body : source_.scene.bodies) {
     parts_.push_back({body.name, ""});
     for (const SceneRegion& region : body.regions) parts_.push_back({body.name, region.name});
@@ -129,13 +128,13 @@ void World::reset() {
   arena_.run([&] {
     Built b = build(source_);
     b.run.state = initial_state(*b.model);
-    const Controls bare{controls_.gravity, {}};
-    b.stepping = std::make_unique<Stepping>(options_of(b.source.scene), *b.model, bare, b.run);
-    for (const Mover& m : obstacles_)
-      if (!m.tool) b.obstacles.push_back({m.id, m.name, false, {}, false});
-    controls_ = bare;
+    b.controls->gravity = controls_->gravity;
+    b.stepping =
+        std::make_unique<Stepping>(options_of(b.source.scene), *b.model, *b.controls, b.run);
+    for (const Mover& m : obstacles_) b.obstacles.push_back({m.id, m.name, false, {}});
+    tools_.clear();
     grabs_.clear();
-    for (Mover& m : pins_) m = {m.id, m.name, false, {}, false};
+    for (Mover& m : pins_) m = {m.id, m.name, false, {}};
     take(std::move(b));
     look_for_inverted_tets();
   });
@@ -151,9 +150,9 @@ Source World::changed(DocValue document, GivenMeshes given) const {
 }
 
 Scene World::current_scene() const {
-  if (controls_.gravity == source_.scene.gravity) return source_.scene;
+  if (controls_->gravity == source_.scene.gravity) return source_.scene;
   DocValue document = source_.document;
-  put_gravity(point(controls_.gravity), source_.scene.file, document);
+  put_gravity(point(controls_->gravity), source_.scene.file, document);
   return changed(std::move(document), source_.scene.given).scene;
 }
 
@@ -161,23 +160,26 @@ Scene World::current_scene() const {
 // take part in the choice of the steps, because their stiffness is bounded by it.
 void World::rebuild(Source source, const std::string& replaced, Steps steps) {
   Built b = build(std::move(source));
-  for (Obstacle& o : b.model->obstacles) {
+  b.controls->gravity = controls_->gravity;
+  for (std::size_t i = 0; i < b.model->obstacles.size(); ++i) {
+    const Obstacle& o = b.model->obstacles[i];
     const auto known = std::find_if(obstacles_.begin(), obstacles_.end(),
                                     [&](const Mover& m) { return m.name == o.name; });
-    b.obstacles.push_back(known != obstacles_.end() ? *known : Mover{0, o.name, false, {}, false});
+    b.obstacles.push_back(known != obstacles_.end() ? *known : Mover{0, o.name, false, {}});
     Mover& mover = b.obstacles.back();
     if (o.name == replaced) {
       mover.held = false;
       mover.to.reset();
     } else if (mover.held) {
-      o.path = obstacle_named(*model_, o.name)->path;
-      if (Pin* pin = pin_of(*b.model, o)) pin->path = o.path;
+      const auto before = static_cast<std::size_t>(known - obstacles_.begin());
+      b.controls->obstacle_paths[i] = controls_->obstacle_paths[before];
+      let_pin_follow(*b.controls, *b.model, i);
     }
   }
   for (std::size_t p = 0; p < pins_.size(); ++p)
-    if (pins_[p].held) b.model->pins[p].path = model_->pins[p].path;
+    if (pins_[p].held) b.controls->pin_paths[p] = controls_->pin_paths[p];
 
-  b.run.state = transfer_state(*model_, run_.state, *b.model, replaced);
+  b.run.state = transfer_state(*model_, run_.state, *b.model, *b.controls, replaced);
   b.run.step = run_.step;
   calm_softened_bodies(*model_, *b.model, b.run.state);
   SteppingOptions options = options_of(b.source.scene);
@@ -185,15 +187,11 @@ void World::rebuild(Source source, const std::string& replaced, Steps steps) {
     options.stepper = run_.stepper;
     options.pace = Pace::any;
   }
-  const Controls bare{controls_.gravity, {}};
-  b.stepping = std::make_unique<Stepping>(options, *b.model, bare, b.run);
+  b.stepping = std::make_unique<Stepping>(options, *b.model, *b.controls, b.run);
   if (steps == Steps::kept) b.run.stepper_reason = run_.stepper_reason;
   b.stepping->resume_at(b.run);
-  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    if (!obstacles_[i].tool) continue;
-    add_obstacle(*b.model, model_->obstacles[i]);
-    b.obstacles.push_back(obstacles_[i]);
-  }
+  b.controls->tools = controls_->tools;
+  b.controls->grabs = controls_->grabs;
   take(std::move(b));
 }
 
@@ -231,9 +229,7 @@ void World::change(ObstacleHandle handle, const ObstacleDescription& description
 
 void World::remove(ObstacleHandle handle) {
   const Busy busy(*this);
-  const std::size_t i = index_of(handle);
-  if (obstacles_[i].tool) return remove_tool(i);
-  const std::string name = obstacles_[i].name;
+  const std::string name = obstacles_[index_of(handle)].name;
   DocValue document = source_.document;
   std::erase_if(document.find("obstacle")->entries,
                 [&](const DocEntry& entry) { return entry.key == name; });
@@ -277,14 +273,15 @@ void World::forget_steps() {
 
 // ---- new steps for the same model ----
 
-// Continues from `state`. Steps are chosen without grabs, which then get their stiffness.
+// `state` goes on here. Grabs take no part in the choice of the steps.
 void World::rechoose(const State& state) {
   RunState run;
   run.state = state;
   run.state.reactions = {};
   run.step = run_.step;
-  const Controls bare{controls_.gravity, {}};
-  auto stepping = std::make_unique<Stepping>(options_of(source_.scene), *model_, bare, run);
+  Controls released = *controls_;
+  released.grabs.clear();
+  auto stepping = std::make_unique<Stepping>(options_of(source_.scene), *model_, released, run);
   stepping->resume_at(run);
   const StepperKind before = run_.stepper;
   stepping_ = std::move(stepping);
@@ -303,19 +300,9 @@ void World::choose_steps() {
 
 void World::go_on_from(const World& other) {
   const Busy busy(*this);
-  for (std::size_t i = obstacles_.size(); i-- > 0;)
-    if (obstacles_[i].tool)
-      model_->obstacles.erase(model_->obstacles.begin() + static_cast<std::ptrdiff_t>(i));
   obstacles_ = other.obstacles_;
   pins_ = other.pins_;
-  for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-    const Obstacle& there = other.model_->obstacles[i];
-    if (obstacles_[i].tool)
-      add_obstacle(*model_, there);
-    else
-      set_path(i, there.path);
-  }
-  for (std::size_t p = 0; p < pins_.size(); ++p) model_->pins[p].path = other.model_->pins[p].path;
+  tools_ = other.tools_;
   moves_waiting_ = other.moves_waiting_;
   next_id_ = std::max(next_id_, other.next_id_);
   controls_ = other.controls_;

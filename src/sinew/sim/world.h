@@ -28,7 +28,10 @@
 
 namespace sinew::sim {
 
-// A scene, and the document that it was read from.
+// A tool of this world (model/controls.h).
+using ToolHandle = Handle<struct ToolKind>;
+
+// A scene, the tree it was read from, and what it was read as.
 struct Source {
   Scene scene;
   DocValue document;
@@ -81,9 +84,11 @@ class World {
   ObstacleHandle obstacle(std::string_view name) const;
   PinHandle pin(std::string_view name) const;
   MaterialHandle material(std::string_view body, std::string_view region) const;
-  // Index into Model::obstacles, Model::pins, the grabs. Error(usage) for other handles.
+  // Index into Model::obstacles, Model::pins, the tools and grabs of the Controls. Error(usage) for
+  // other handles.
   std::size_t index_of(ObstacleHandle handle) const;
   std::size_t index_of(PinHandle handle) const;
+  std::size_t index_of(ToolHandle handle) const;
   std::size_t index_of(GrabHandle handle) const;
   std::size_t index_of(MaterialHandle handle) const;
   // The handle here of the object that `handle` names in the world that this one went on from.
@@ -95,7 +100,7 @@ class World {
   // ---- changes that build the model anew (world.cpp) ----
   ObstacleHandle add(const ObstacleDescription& description);
   void change(ObstacleHandle handle, const ObstacleDescription& description);
-  void remove(ObstacleHandle handle);  // a tool: without building a model
+  void remove(ObstacleHandle handle);
   void change(MaterialHandle handle, const MaterialDescription& description);
   // Other values of the same bodies, pins and obstacles, as overrides like those of --set. Steps
   // are chosen anew and counters start again.
@@ -114,19 +119,17 @@ class World {
 
   // ---- motion (moves.cpp) ----
   void set_gravity(const Vec3& gravity);
-  // Moves to the pose: over the next step or advance (move), at once (place), or over the next
-  // `seconds` > 0 (lead).
+  // To the pose over the next step or advance, or at once.
   void move(ObstacleHandle handle, const Pose& pose);
   void place(ObstacleHandle handle, const Pose& pose);
-  void lead(ObstacleHandle handle, const Pose& pose, double seconds);
   void move(PinHandle handle, const RigidMotion& motion);
-  // A tool is a soft sphere that belongs to the owner, not to the scene. It follows the scene's
-  // obstacles in the model, is added and removed without another model, and stays when the model
-  // changes.
-  ObstacleHandle add_tool(const std::string& name, const Vec3& center, double radius,
-                          double stiffness);
-  // Gives a tool another radius [m] and stiffness [N/m3], at once.
-  void reshape(ObstacleHandle handle, double radius, double stiffness);
+  // A tool comes and goes without another model, and stays when the model changes.
+  ToolHandle add_tool(const Vec3& center, double radius, double stiffness);
+  // To `center` [m] over the next `seconds` > 0.
+  void lead(ToolHandle handle, const Vec3& center, double seconds);
+  // Another radius [m] and stiffness [N/m3], at once.
+  void reshape(ToolHandle handle, double radius, double stiffness);
+  void remove(ToolHandle handle);
 
   // ---- grabs (grabs.cpp) ----
   // Holds the nodes of the node's body within `radius` [m] of it by springs to `target`, which do
@@ -159,7 +162,7 @@ class World {
   const std::vector<std::string>& warnings() const { return warnings_; }
   const std::vector<BodyInfo>& bodies() const { return bodies_; }
   const std::vector<Triangle>& surface() const { return surface_; }
-  const Controls& controls() const { return controls_; }
+  const Controls& controls() const { return *controls_; }
   Index body_nodes() const { return model_->body_node_count(); }
 
   // ---- readings, at the current positions (world_readings.cpp) ----
@@ -172,13 +175,16 @@ class World {
   ContactFinder* finder();
 
  private:
-  // An object that the owner may move: its path is written before every step.
+  // Something that the owner has moved, or may: its path in the Controls is written in front of
+  // every step.
   struct Mover {
     std::uint64_t id = 0;
     std::string name;
-    bool held = false;           // by the owner: it has left the scene's path
-    std::optional<KeyFrame> to;  // target of the next step or advance
-    bool tool = false;           // of the owner alone, after the scene's obstacles
+    bool held = false;           // by the owner: its path is no longer the scene's
+    std::optional<KeyFrame> to;  // where the next step or advance takes it
+  };
+  struct Named {  // what has a handle and nothing else
+    std::uint64_t id = 0;
   };
   struct Patch {  // the nodes of a grab
     std::uint64_t id = 0;
@@ -193,8 +199,9 @@ class World {
   struct Built {
     Source source;
     BuildReport report;
-    std::unique_ptr<Model> model;
+    std::unique_ptr<const Model> model;
     std::uint64_t hash = 0;
+    std::optional<Controls> controls;
     std::unique_ptr<Stepping> stepping;
     RunState run;
     std::vector<Mover> obstacles;
@@ -229,8 +236,8 @@ class World {
   void end_frame();
   void look_for_inverted_tets();
   void start_moves(double span);
-  void remove_tool(std::size_t obstacle);
-  void set_path(std::size_t obstacle, const Path& path);
+  template <typename F>
+  void change_tools(const F& change);
   KeyFrame motion_to(std::size_t obstacle, const Pose& pose) const;
   void note(EventKind kind, std::int64_t count, std::string text);
   void note_stepper(StepperKind before);
@@ -242,10 +249,10 @@ class World {
   Arena arena_;
   Source source_;
   BuildReport report_;
-  std::unique_ptr<Model> model_;
+  std::unique_ptr<const Model> model_;
   std::uint64_t model_hash_ = 0;
   std::unique_ptr<Stepping> stepping_;
-  Controls controls_;
+  std::optional<Controls> controls_;  // of the model: there with it
   RunState run_;
   RunState good_;       // the run returns to it when it diverges
   double clock_ = 0.0;  // time up to which advance() was requested [s]
@@ -254,8 +261,9 @@ class World {
   std::vector<Triangle> surface_;
 
   std::uint64_t next_id_ = 1;
-  std::vector<Mover> obstacles_;  // (Model::obstacles: the scene's, the ground, then tools)
-  std::vector<Mover> pins_;       // the scene's (the first of Model::pins)
+  std::vector<Mover> obstacles_;  // (Model::obstacles)
+  std::vector<Mover> pins_;       // the scene's: (the first of Model::pins)
+  std::vector<Named> tools_;      // (Controls::tools)
   std::vector<Patch> grabs_;      // (Controls::grabs)
   std::vector<Part> parts_;
 

@@ -22,18 +22,6 @@ struct Sum {
   Wrench wrench() const { return {point(force), point(torque)}; }
 };
 
-// Calls f(node, force on it) for every node that a soft obstacle pushes.
-template <typename F>
-void for_each_pushed(const Model& model, const State& state, const Obstacle& o, const F& f) {
-  const Vec3 center = o.path.at(state.time, o.center);
-  for (std::size_t n = 0; n < model.surface_share.size(); ++n) {
-    if (model.surface_share[n] == 0.0 || model.inverse_mass[n] == 0.0) continue;
-    const Vec3 r = state.position[n] - center;
-    if (r.norm() < o.soft_radius())
-      f(n, obstacle_push(r, o.soft_radius(), o.stiffness * model.surface_share[n]));
-  }
-}
-
 template <typename Contact>
 Vec3 place_of(const Contact& c, const std::vector<Vec3>& x) {
   Vec3 place = Vec3::Zero();
@@ -47,7 +35,7 @@ const std::vector<Vec3>& World::forces() {
   if (forces_of_ == changes_) return forces_;
   arena_.run([&] {
     if (!evaluator_) evaluator_ = std::make_unique<ForceEvaluator>(*model_, Precision::double_);
-    forces_ = evaluator_->evaluate(controls_, run_.state).force;
+    forces_ = evaluator_->evaluate(*controls_, run_.state).force;
   });
   const Reactions& r = run_.state.reactions;
   for (const ContactPush& p : r.contacts)
@@ -60,9 +48,10 @@ Wrench World::wrench(std::size_t obstacle, const Vec3& about) {
   const Obstacle& o = model_->obstacles[obstacle];
   Sum sum{about};
   if (!o.hard()) {
-    for_each_pushed(*model_, run_.state, o, [&](std::size_t n, const Vec3& push) {
-      sum.add(run_.state.position[n], -push);
-    });
+    for_each_pressed(*model_, soft_sphere(*model_, *controls_, obstacle, run_.state.time),
+                     run_.state.position, [&](std::size_t n, const Vec3&, const Vec3& push) {
+                       sum.add(run_.state.position[n], -push);
+                     });
     return sum.wrench();
   }
   for (const ContactPush& p : run_.state.reactions.contacts)
@@ -77,7 +66,7 @@ Wrench World::pin_wrench(std::size_t pin, const Vec3& about) {
   Sum sum{about};
   for (const Index node : nodes) {
     const auto n = uz(node);
-    sum.add(run_.state.position[n], force[n] + model_->mass[n] * controls_.gravity);
+    sum.add(run_.state.position[n], force[n] + model_->mass[n] * controls_->gravity);
   }
   return sum.wrench();
 }
@@ -95,7 +84,8 @@ void World::find_contacts_now() {
   arena_.run([&] {
     const State& s = run_.state;
     if (ContactFinder* f = finder())
-      f->find(s.position, s.position, s.time, s.time, touching_distance(*model_), contacts_);
+      f->find(*controls_, s.position, s.position, s.time, s.time, touching_distance(*model_),
+              contacts_);
   });
   contacts_of_ = changes_;
 }
@@ -105,13 +95,11 @@ void World::contacts(std::size_t obstacle, std::vector<ContactPoint>& out) {
   const Obstacle& o = model_->obstacles[obstacle];
   const std::vector<Vec3>& x = run_.state.position;
   if (!o.hard()) {
-    const Vec3 center = o.path.at(run_.state.time, o.center);
-    for_each_pushed(*model_, run_.state, o, [&](std::size_t n, const Vec3&) {
-      const Vec3 r = x[n] - center;
+    const SoftSphere sphere = soft_sphere(*model_, *controls_, obstacle, run_.state.time);
+    for_each_pressed(*model_, sphere, x, [&](std::size_t n, const Vec3& r, const Vec3&) {
       const double distance = r.norm();
       const Vec3 normal = distance > 0.0 ? Vec3(r / distance) : Vec3::Zero();
-      out.push_back(
-          {point(x[n]), point(normal), o.soft_radius() - distance, static_cast<Index>(n)});
+      out.push_back({point(x[n]), point(normal), sphere.radius - distance, static_cast<Index>(n)});
     });
     return;
   }
@@ -126,14 +114,11 @@ void World::contacts(std::size_t obstacle, std::vector<ContactPoint>& out) {
 
 double World::depth(std::size_t obstacle) {
   const Obstacle& o = model_->obstacles[obstacle];
-  double deepest = 0.0;
   if (!o.hard()) {
-    const Vec3 center = o.path.at(run_.state.time, o.center);
-    for_each_pushed(*model_, run_.state, o, [&](std::size_t n, const Vec3&) {
-      deepest = std::max(deepest, o.soft_radius() - (run_.state.position[n] - center).norm());
-    });
-    return deepest;
+    const SoftSphere sphere = soft_sphere(*model_, *controls_, obstacle, run_.state.time);
+    return read_soft_sphere(*model_, sphere, run_.state.position).depth;
   }
+  double deepest = 0.0;
   find_contacts_now();
   for (const Contact& c : contacts_)
     if (c.id.obstacle() == static_cast<Index>(obstacle)) deepest = std::max(deepest, -c.gap);

@@ -38,8 +38,8 @@ NewtonReport minimise_augmented_lagrangian(const Objective& objective, LinearSol
     report.rests = of_pass.rests && o.tolerance == options.tolerance;
     report.stopped = of_pass.stopped;
     report.pull = std::move(of_pass.pull);
-    const ConstraintError error =
-        objective.constraints->update(state.position, forces.tet_volumes(state.position));
+    const ConstraintError error = objective.constraints->update(objective.controls, state.position,
+                                                                forces.tet_volumes(state.position));
     report.within = error.distance <= 1.0 && error.grip <= 1.0 && error.anew <= 1.0;
     if (!of_pass.rests || of_pass.stopped || (report.rests && report.within)) return report;
     if (error.distance > std::max(1.0, slow * distance)) objective.constraints->harden(stiffer);

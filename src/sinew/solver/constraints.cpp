@@ -33,15 +33,16 @@ std::vector<double> node_compliance(const Model& model, double inertia, double r
       d[uz(end)] += model.stiffness[s] + rate * model.damping[s];
     }
   }
-  const Controls none;
+  const Controls at_rest = initial_controls(model);
   for_each_type(Terms{}, [&](auto term) {
-    term.for_each_element({model, none, model.rest_position}, Tangent::full, [&](const Element& e) {
-      for_each_pair(e, [&](Index i, Index j, double w_i, double w_j) {
-        const double k = -e.norm * w_i * w_j;
-        d[uz(i)] += k;
-        d[uz(j)] += k;
-      });
-    });
+    term.for_each_element({model, at_rest, model.rest_position}, Tangent::full,
+                          [&](const Element& e) {
+                            for_each_pair(e, [&](Index i, Index j, double w_i, double w_j) {
+                              const double k = -e.norm * w_i * w_j;
+                              d[uz(i)] += k;
+                              d[uz(j)] += k;
+                            });
+                          });
   });
   for (std::size_t t = 0; t < model.tets.size() && model.has_volume; ++t) {
     double bulk = model.tet_bulk[t];
@@ -135,8 +136,9 @@ bool Constraints::empty() const {
   return spring_stiffness_.empty() && cell_stiffness_.empty() && contacts_.empty();
 }
 
-void Constraints::start(const State& state, const std::vector<Vec3>* from, double step) {
-  contacts_.start(state, from, step);
+void Constraints::start(const Controls& controls, const State& state, const std::vector<Vec3>* from,
+                        double step) {
+  contacts_.start(controls, state, from, step);
   hardness_ = 1.0;
   now_ = state.reactions;
   if (now_.tension.size() != spring_stiffness_.size()) {
@@ -265,7 +267,7 @@ void Constraints::add_stiffness_times(const TetVolumes& tets, const std::vector<
   });
 }
 
-ConstraintError Constraints::update(const std::vector<Vec3>& x,
+ConstraintError Constraints::update(const Controls& controls, const std::vector<Vec3>& x,
                                     std::span<const double> tet_volume) {
   Reactions next = now_;
   const double springs = parallel_max(next.tension.size(), [&](std::size_t i) {
@@ -284,7 +286,7 @@ ConstraintError Constraints::update(const std::vector<Vec3>& x,
     return std::abs(next.pressure[i] - now_.pressure[i]) / (k * tolerance * model_.cell_volume[i]);
   });
   now_ = std::move(next);
-  const ContactConstraints::Change touching = contacts_.update(x);
+  const ContactConstraints::Change touching = contacts_.update(controls, x);
   now_.contacts = contacts_.pushes();
   return {std::max({springs, cells, touching.distance}), touching.grip, touching.anew};
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/forces/volume.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 #include "sinew/solver/contact_constraints.h"
 
@@ -37,10 +38,10 @@ class Constraints {
 
   bool empty() const;
 
-  // Takes the multipliers of the state's last step. `from`: the positions at the start of the step
-  // of length `step` [s], from which slips are measured [m] (nodes); a reference is kept; may be
-  // null without friction.
-  void start(const State& state, const std::vector<Vec3>* from, double step);
+  // Takes the multipliers from where the state's last step left them. `from`: where the step of
+  // length `step` [s] and its slips start [m] (nodes); kept, and may be null without friction.
+  void start(const Controls& controls, const State& state, const std::vector<Vec3>* from,
+             double step);
 
   // --- the energy for the current multipliers; the tets are those at x ---
 
@@ -74,9 +75,10 @@ class Constraints {
 
   // --- the multipliers ---
 
-  // Takes the forces at x as the new multipliers; returns the error of the old ones.
-  ConstraintError update(const std::vector<Vec3>& x, std::span<const double> tet_volume);
-  // Multiplies every k by `factor`, until the next start().
+  // Takes the pushes at x as the new multipliers; returns how far the old ones were off.
+  ConstraintError update(const Controls& controls, const std::vector<Vec3>& x,
+                         std::span<const double> tet_volume);
+  // Multiplies every k; start() takes that back.
   void harden(double factor) {
     hardness_ *= factor;
     contacts_.harden(factor);

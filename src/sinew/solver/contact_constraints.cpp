@@ -35,7 +35,8 @@ ContactConstraints::ContactConstraints(const Model& model, const std::vector<dou
   finder_ = std::make_unique<ContactFinder>(model);
 }
 
-void ContactConstraints::start(const State& state, const std::vector<Vec3>* from, double step) {
+void ContactConstraints::start(const Controls& controls, const State& state,
+                               const std::vector<Vec3>* from, double step) {
   if (empty()) return;
   hardness_ = 1.0;
   passes_ = 0;
@@ -50,7 +51,7 @@ void ContactConstraints::start(const State& state, const std::vector<Vec3>* from
     h.push = p.push;
     held_.push_back(h);
   }
-  find(state.position);
+  find(controls, state.position);
 }
 
 ContactConstraints::Held ContactConstraints::hold(const Contact& c) const {
@@ -66,10 +67,11 @@ ContactConstraints::Held ContactConstraints::hold(const Contact& c) const {
   return h;
 }
 
-// Finds the contacts at x. A contact takes the force of the same pair before, or of the same
-// feature if it has moved on to another part of its owner.
-void ContactConstraints::find(const std::vector<Vec3>& x) {
-  finder_->find(from_ != nullptr ? *from_ : here_, x, before_, now_, {reach_, no_limit}, found_);
+// Contacts at x; what they push with is that of the same pair before, or of the same feature where
+// it has gone on to another part of its owner.
+void ContactConstraints::find(const Controls& controls, const std::vector<Vec3>& x) {
+  finder_->find(controls, from_ != nullptr ? *from_ : here_, x, before_, now_, {reach_, no_limit},
+                found_);
   if (passes_ > free_passes) {
     add_new();
     return;
@@ -194,7 +196,8 @@ void ContactConstraints::add_stiffness_times(const std::vector<Vec3>& u,
   }
 }
 
-ContactConstraints::Change ContactConstraints::update(const std::vector<Vec3>& x) {
+ContactConstraints::Change ContactConstraints::update(const Controls& controls,
+                                                      const std::vector<Vec3>& x) {
   Change change;
   if (empty()) return change;
   ++passes_;
@@ -220,7 +223,7 @@ ContactConstraints::Change ContactConstraints::update(const std::vector<Vec3>& x
   std::vector<Vec3> difference(x.size(), Vec3::Zero());
   add_reactions(difference);
   for (Vec3& f : difference) f = -f;
-  find(x);
+  find(controls, x);
   add_reactions(difference);
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (compliance_[i] == 0.0 || difference[i].isZero(0.0)) continue;

@@ -7,6 +7,7 @@
 
 #include "sinew/contact/contact.h"
 #include "sinew/contact/contact_finder.h"
+#include "sinew/model/controls.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
@@ -26,10 +27,10 @@ class ContactConstraints {
 
   bool empty() const { return !finder_; }
 
-  // Takes the contact forces of the state's last step. from: positions at the start of the step [m]
-  // (nodes), or null for rest states, which have no friction; the step starts `step` [s] before
-  // state.time.
-  void start(const State& state, const std::vector<Vec3>* from, double step);
+  // Takes the pushes of the state's last step. from: where the step starts [m] (nodes), null: rest
+  // states, without friction; `step` [s] before state.time.
+  void start(const Controls& controls, const State& state, const std::vector<Vec3>* from,
+             double step);
 
   double value(const std::vector<Vec3>& x) const;                               // [J]
   void add_forces(const std::vector<Vec3>& x, std::vector<Vec3>& force) const;  // [N]
@@ -52,7 +53,7 @@ class ContactConstraints {
     double grip = 0.0;
     double anew = 0.0;  // error due to contacts that were found again
   };
-  Change update(const std::vector<Vec3>& x);
+  Change update(const Controls& controls, const std::vector<Vec3>& x);
   void harden(double factor) { hardness_ *= factor; }
 
   std::vector<ContactPush> pushes() const;                   // the contacts with a force
@@ -70,7 +71,7 @@ class ContactConstraints {
     Vec3 push = Vec3::Zero();   // multiplier, force of the contact [N]
     Vec3 start = Vec3::Zero();  // contact_offset, also the anchor, at the start of the step [m]
   };
-  void find(const std::vector<Vec3>& x);
+  void find(const Controls& controls, const std::vector<Vec3>& x);
   void add_new();
   Held hold(const Contact& c) const;
   Vec3 slip(const Held& h, const std::vector<Vec3>& x) const;

@@ -40,7 +40,7 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
     objective.inertia = 1.0 / (h * h);
     objective.inertial = &inertial;
     if (!constraints_.empty()) objective.constraints = &constraints_;
-    constraints_.start(state, nullptr, 0.0);
+    constraints_.start(controls, state, nullptr, 0.0);
     state.position = inertial;
     const double tolerance = std::clamp(0.1 * pull, options.tolerance, 1e-3);
     const NewtonReport step = minimise_augmented_lagrangian(

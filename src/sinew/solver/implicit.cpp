@@ -29,19 +29,20 @@ Field blend(double a, const Field& x, double b, const Field& y) {
   return out;
 }
 
-// Moves the pinned nodes to their positions at state.time.
-void move_pins(const Model& model, State& state) {
-  for (const Pin& pin : model.pins) {
-    for (const Index node : pin.nodes) {
-      state.position[uz(node)] = pin.path.at(state.time, model.rest_position[uz(node)]);
+// Where the pinned nodes are at state.time.
+void move_pins(const Model& model, const Controls& controls, State& state) {
+  for (std::size_t p = 0; p < model.pins.size(); ++p) {
+    for (const Index node : model.pins[p].nodes) {
+      state.position[uz(node)] =
+          controls.pin_paths[p].at(state.time, model.rest_position[uz(node)]);
     }
   }
 }
 
-// The work of loads, pins and obstacles since the time `since`: their forces at the end times the
-// displacement. pull: forces of the model and the constraints on all nodes at the end [N].
-double work_of_the_outside(const Model& model, const Field& before, double since,
-                           const State& state, const Field& pull) {
+// What loads, pins, soft obstacles and tools put in since the time `since`: their forces at its end
+// along the way. pull: of the model and the constraints on all nodes at the end [N].
+double work_of_the_outside(const Model& model, const Controls& controls, const Field& before,
+                           double since, const State& state, const Field& pull) {
   double work = 0.0;
   for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& force) {
     if (model.inverse_mass[uz(node)] > 0.0) {
@@ -53,12 +54,8 @@ double work_of_the_outside(const Model& model, const Field& before, double since
       work -= pull[uz(node)].dot(state.position[uz(node)] - before[uz(node)]);
     }
   }
-  if (!model.obstacles.empty()) {
-    const std::vector<Vec3> centers = obstacle_centers(model, since);
-    const auto readings = read_obstacles(model, state.position, state.time);
-    for (std::size_t c = 0; c < readings.size(); ++c)
-      work -= readings[c].force.dot(readings[c].center - centers[c]);
-  }
+  for_each_work_on_spheres(configuration(model, controls, state), since, state.time,
+                           [&](double of_one) { work -= of_one; });
   return work;
 }
 
@@ -94,7 +91,7 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
     constraints_ = std::make_unique<Constraints>(model_, about, std::sqrt(about), true);
     constrained_inertia_ = about;
   }
-  constraints_->start(state, &from, h);
+  constraints_->start(controls, state, &from, h);
   const Field lag = state.position;
   const Field inertial = blend(1.0, from, h, velocity);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
@@ -106,13 +103,13 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
   const bool single = options.single && may_take_single(model_, options.tolerance);
   if (single && !in_single_) in_single_.emplace(model_, Precision::single);
   ForceEvaluator& forces = single ? *in_single_ : forces_;
-  move_pins(model_, state);
+  move_pins(model_, controls, state);
   const Field stand = state.position;
   const double standing = options.deadline ? objective_value(objective, state, forces) : 0.0;
   // Starts from the inertial positions; with a deadline only if their objective is below that of
   // the current ones.
   state.position = inertial;
-  move_pins(model_, state);
+  move_pins(model_, controls, state);
   if (options.deadline && !(objective_value(objective, state, forces) < standing)) {
     state.position = stand;
   }
@@ -122,7 +119,7 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
   report.products += newton.products;
   if (!newton.rests && !options.deadline) {  // starts again from the old positions
     state.position = stand;
-    constraints_->start(state, &from, h);
+    constraints_->start(controls, state, &from, h);
     newton = minimise_augmented_lagrangian(objective, linear_, newton_options, forces_, state);
     report.newton += newton.newton;
     report.products += newton.products;
@@ -139,12 +136,11 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
   return std::move(newton.pull);
 }
 
-// The heat of dashpots and drag with the scheme's weights, and the work on the displacement from
-// `before`.
-void ImplicitStepper::account(const Field& before, double since, double weight, const Field& pull,
-                              State& state) {
+// Heat of dashpots and drag by the scheme's own weights, work along the way from `before`.
+void ImplicitStepper::account(const Controls& controls, const Field& before, double since,
+                              double weight, const Field& pull, State& state) {
   state.energy.dissipated += weight * damping_power(model_, before, state.half_velocity);
-  state.energy.work_in += work_of_the_outside(model_, before, since, state, pull);
+  state.energy.work_in += work_of_the_outside(model_, controls, before, since, state, pull);
 }
 
 bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitOptions& options,
@@ -158,13 +154,13 @@ bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitO
   if (!pull) return false;
   if (act(state.reactions)) return true;
   const Field v1 = state.half_velocity;
-  account(x, time, (1.0 - g) * h, *pull, state);
+  account(controls, x, time, (1.0 - g) * h, *pull, state);
   const Field x1 = state.position;
   state.time = time + h;
   pull = solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
                g * h, controls, options, state, report);
   if (!pull) return false;
-  account(x1, time + g * h, g * h, *pull, state);
+  account(controls, x1, time + g * h, g * h, *pull, state);
   return true;
 }
 
@@ -176,7 +172,7 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
   state.time += h;
   const auto pull = solve(x, v, h, controls, options, state, report);
   if (!pull) return false;
-  account(x, state.time - h, h, *pull, state);
+  account(controls, x, state.time - h, h, *pull, state);
   if (constraints_->empty()) return true;
   // The work of the impulses of contacts and limits uses the mean of the velocities before and
   // after the step, as in Verlet's energy balance: it is 0 for a body at rest.

@@ -70,7 +70,8 @@ class ImplicitStepper {
               StepReport& report);
   bool backward_euler(double h, const Controls& controls, const ImplicitOptions& options,
                       State& state, StepReport& report);
-  void account(const Field& before, double since, double weight, const Field& pull, State& state);
+  void account(const Controls& controls, const Field& before, double since, double weight,
+               const Field& pull, State& state);
   std::optional<Field> solve(const Field& from, const Field& velocity, double h,
                              const Controls& controls, const ImplicitOptions& options, State& state,
                              StepReport& report);

@@ -49,14 +49,14 @@ StepReport ImplicitStepper::lead_back(std::span<const Index> tangled, double h,
   Righted righted;
   for (int way = 0; way < most_ways; ++way) {
     lead_tangled_bodies(model_, controls, h, tangled, led);
-    lift_onto_planes(model_, state.time + h, led.position);
+    lift_onto_planes(model_, controls, state.time + h, led.position);
     righted = find_righted(model_, tangled, led);
     if (!righted.half) break;
   }
   calm_bodies(model_, righted.bodies, led);
 
   std::vector<HalfSpace> planes;
-  for_each_hard_plane(model_, state.time + h,
+  for_each_hard_plane(model_, controls, state.time + h,
                       [&](const HalfSpace& plane) { planes.push_back(plane); });
   Model others = model_;
   for (const Index b : tangled) {

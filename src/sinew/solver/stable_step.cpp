@@ -196,7 +196,7 @@ double guaranteed_step(const Model& model, const Controls& controls, const Field
   double highest = 0.0;
   for (Index i = 0; i < model.node_count(); ++i) {
     const auto n = uz(i);
-    double k = rows[n] + most_stiffness(model, i);
+    double k = rows[n] + most_stiffness(model, controls, i);
     double c = model.drag[n] * model.mass[n] + viscous_rows[n];
     for (Index e = model.spring_start[n]; e < model.spring_start[n + 1]; ++e) {
       const Index spring = model.node_spring[uz(e)] >> 1;

@@ -26,19 +26,19 @@ constexpr double soft_volume = 30.0;
 constexpr int most_load_cuts = 12;      // a load step may be halved this often
 constexpr int cuts_before_falling = 2;  // then dynamic relaxation is tried, once
 
-// The largest rotation angle [rad] of a pin between two times.
-double pins_turn(const Model& model, double from, double to) {
+// The largest angle [rad] that a pin turns by between two times.
+double pins_turn(const Controls& controls, double from, double to) {
   double largest = 0.0;
-  for (const Pin& pin : model.pins) {
-    if (pin.path.keys.empty()) continue;
+  for (const Path& path : controls.pin_paths) {
+    if (path.keys.empty()) continue;
     double angle = 0.0;
     constexpr int samples = 64;
     for (int axis = 0; axis < 3; ++axis) {
-      const Vec3 arm = pin.path.pivot + Vec3::Unit(axis);
+      const Vec3 arm = path.pivot + Vec3::Unit(axis);
       double turned = 0.0;
       const auto at = [&](int s) {
         const double t = from + (to - from) * s / samples;
-        return Vec3(pin.path.at(t, arm) - pin.path.at(t, pin.path.pivot));
+        return Vec3(path.at(t, arm) - path.at(t, path.pivot));
       };
       for (int s = 0; s < samples; ++s) {
         const Vec3 a = at(s);
@@ -55,19 +55,17 @@ double pins_turn(const Model& model, double from, double to) {
 // Calls f(nodes) for every connection between nodes that is not part of one body's material:
 // attachments, distance constraints, and the elements of the terms.
 template <typename F>
-void for_each_joint(const Model& model, const F& f) {
+void for_each_joint(const Model& model, const Controls& controls, const F& f) {
   for (auto s = uz(model.first_attachment); s < model.springs.size(); ++s)
     f(std::span<const Index>(model.springs[s]));
-  const Controls none;
   for_each_type(Terms{}, [&](auto term) {
-    term.for_each_element({model, none, model.rest_position}, Tangent::full,
+    term.for_each_element({model, controls, model.rest_position}, Tangent::full,
                           [&](const Element& e) { f(e.nodes); });
   });
 }
 
-// Bodies joined by attachments, distance constraints and glue, as the first body of each group
-// (bodies).
-std::vector<std::size_t> joined_bodies(const Model& model) {
+// Bodies joined by attachments, distances and glue, as the first body of each group (bodies).
+std::vector<std::size_t> joined_bodies(const Model& model, const Controls& controls) {
   std::vector<std::size_t> group(model.bodies.size());
   std::iota(group.begin(), group.end(), std::size_t{0});
   const auto body_of = [&](Index node) {
@@ -83,7 +81,7 @@ std::vector<std::size_t> joined_bodies(const Model& model) {
     const std::size_t high = std::max(group[a], group[b]);
     std::replace(group.begin(), group.end(), high, low);
   };
-  for_each_joint(model, [&](std::span<const Index> nodes) {
+  for_each_joint(model, controls, [&](std::span<const Index> nodes) {
     for (const Index node : nodes) join(nodes.front(), node);
   });
   return group;
@@ -91,7 +89,7 @@ std::vector<std::size_t> joined_bodies(const Model& model) {
 
 // The groups of joined bodies that no pin, anchor or grab holds (bodies; -1: held).
 std::vector<Index> unheld_groups(const Model& model, const Controls& controls) {
-  const std::vector<std::size_t> group = joined_bodies(model);
+  const std::vector<std::size_t> group = joined_bodies(model, controls);
   std::vector<char> held(group.size(), 0);
   for (std::size_t b = 0; b < group.size(); ++b) {
     for (auto i = uz(model.bodies[b].nodes.begin); i < uz(model.bodies[b].nodes.end); ++i) {
@@ -103,8 +101,8 @@ std::vector<Index> unheld_groups(const Model& model, const Controls& controls) {
       if (model.bodies[b].nodes.contains(node)) held[group[b]] = 1;
     }
   };
-  for_each_joint(model, [&](std::span<const Index> nodes) {
-    // An anchor holds the bodies of the other nodes.
+  for_each_joint(model, controls, [&](std::span<const Index> nodes) {
+    // An anchor holds what the other nodes belong to.
     if (*std::max_element(nodes.begin(), nodes.end()) < model.body_node_count()) return;
     for (const Index node : nodes) hold(node);
   });
@@ -149,7 +147,7 @@ std::vector<Resting> resting_groups(const Model& model, const Controls& controls
     Vec3 lacks = net[g];
     bool planes = false;
     HalfSpace best;
-    for_each_hard_plane(model, time, [&](const HalfSpace& plane) {
+    for_each_hard_plane(model, controls, time, [&](const HalfSpace& plane) {
       planes = true;
       const Vec3 left = net[g] - std::min(0.0, plane.normal.dot(net[g])) * plane.normal;
       if (!(left.norm() < lacks.norm())) return;
@@ -261,7 +259,7 @@ int StaticSolver::solve_tangent(const Configuration& at, const Field& rhs, doubl
 // Rockafellar 1976).
 NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& options,
                                   ForceEvaluator& forces, State& state) {
-  constraints_.start(state, nullptr, 0.0);
+  constraints_.start(objective.controls, state, nullptr, 0.0);
   if (!constraints_.empty()) objective.constraints = &constraints_;
   objective.inertia = nudge_;
   const Field outer = outer_forces(model_, objective.controls, state);
@@ -273,7 +271,7 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
     const NewtonReport once =
         minimise_augmented_lagrangian(objective, linear_, options, forces, state);
     constraints_.store(state);
-    constraints_.start(state, nullptr, 0.0);
+    constraints_.start(objective.controls, state, nullptr, 0.0);
     const int newton = report.newton + once.newton;
     const int products = report.products + once.products;
     report = once;
@@ -294,10 +292,11 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
 int StaticSolver::move_pins_to(const Controls& controls, double start_time, double time,
                                double share, State& state) {
   Field move(state.position.size(), Vec3::Zero());
-  for (const Pin& pin : model_.pins) {
-    for (const Index node : pin.nodes) {
+  for (std::size_t p = 0; p < model_.pins.size(); ++p) {
+    for (const Index node : model_.pins[p].nodes) {
       const double t = start_time + share * (time - start_time);
-      move[uz(node)] = pin.path.at(t, model_.rest_position[uz(node)]) - state.position[uz(node)];
+      move[uz(node)] =
+          controls.pin_paths[p].at(t, model_.rest_position[uz(node)]) - state.position[uz(node)];
     }
   }
   int products = 0;
@@ -328,7 +327,7 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
   put_down(model_, controls, resting, state);
 
   const int turns =
-      static_cast<int>(std::ceil(pins_turn(model_, start_time, time) / turn_per_load_step));
+      static_cast<int>(std::ceil(pins_turn(controls, start_time, time) / turn_per_load_step));
   double length = 1.0 / std::max({1, options.min_load_steps, turns});
   bool gradual = options.min_load_steps > 1;  // outer forces are applied gradually too
   NewtonReport falls;

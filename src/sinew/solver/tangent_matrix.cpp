@@ -159,10 +159,10 @@ void TangentMatrix::find_far_neighbours() {
   far_start_.assign(free_.size() + 1, 0);
   far_sum_.resize(free_.size());
   std::vector<std::vector<std::pair<Index, double>>> tied;
-  const Controls none;
+  const Controls ungrabbed = initial_controls(model_);
   for_each_type(Terms{}, [&](auto term) {
     if constexpr (term.isotropic) {
-      term.for_each_element({model_, none, model_.rest_position}, Tangent::full,
+      term.for_each_element({model_, ungrabbed, model_.rest_position}, Tangent::full,
                             [&](const Element& e) {
                               for_each_pair(e, [&](Index i, Index j, double w_i, double w_j) {
                                 const double k = -e.block(0, 0) * w_i * w_j;

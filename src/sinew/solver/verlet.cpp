@@ -39,14 +39,16 @@ Index move_free_nodes(const Model& model, const std::vector<Vec3>& force, double
   return none;
 }
 
-// Moves the pinned nodes along their paths; adds the work of their motion.
-void move_pins(const Model& model, const std::vector<Vec3>& force, double h, State& state) {
+// Moves the pinned nodes along their paths; adds the work their motion does on the springs.
+void move_pins(const Model& model, const Controls& controls, const std::vector<Vec3>& force,
+               double h, State& state) {
   const double kick = 0.5 * (state.last_step + h);
-  for (const Pin& pin : model.pins) {
-    if (pin.path.keys.empty()) continue;
-    for (const Index node : pin.nodes) {
+  for (std::size_t p = 0; p < model.pins.size(); ++p) {
+    const Path& path = controls.pin_paths[p];
+    if (path.keys.empty()) continue;
+    for (const Index node : model.pins[p].nodes) {
       const auto k = uz(node);
-      const Vec3 target = pin.path.at(state.time + h, model.rest_position[k]);
+      const Vec3 target = path.at(state.time + h, model.rest_position[k]);
       const Vec3 velocity = (target - state.position[k]) / h;
       const Vec3 mean = 0.5 * (state.half_velocity[k] + velocity);
       state.energy.work_in -= kick * force[k].dot(mean);
@@ -66,18 +68,13 @@ void add_work_of_loads(const Model& model, const std::vector<Vec3>& force, doubl
   });
 }
 
-// Work of the obstacles that follow a path in the step: their forces on the bodies times their
-// displacement, with the velocity (c(t + h) - c(t - h_last)) / (h + h_last); called before the
+// Work of the soft obstacles and tools that move over the step: their forces on the bodies times
+// their own way, with the velocity (c(t + h) - c(t - h_last)) / (h + h_last); called before the
 // move.
-void add_work_of_obstacles(const Model& model, double h, State& state) {
-  bool moves = false;
-  for (const Obstacle& o : model.obstacles) moves = moves || !o.path.keys.empty();
-  if (!moves) return;
-  const std::vector<Vec3> before = obstacle_centers(model, state.time - state.last_step);
-  const std::vector<Vec3> after = obstacle_centers(model, state.time + h);
-  const auto readings = read_obstacles(model, state.position, state.time);
-  for (std::size_t c = 0; c < readings.size(); ++c)
-    state.energy.work_in -= 0.5 * readings[c].force.dot(after[c] - before[c]);
+void add_work_of_obstacles(const Model& model, const Controls& controls, double h, State& state) {
+  for_each_work_on_spheres(configuration(model, controls, state), state.time - state.last_step,
+                           state.time + h,
+                           [&](double work) { state.energy.work_in -= 0.5 * work; });
 }
 
 // Makes the velocities follow positions that constraints have moved, and counts the energy. The
@@ -96,16 +93,16 @@ void follow_positions(const Model& model, const std::vector<Vec3>& force,
   });
 }
 
-// Projects the limits, with hard planes as additional constraints; velocities follow.
-void enforce_limits(const Model& model, const std::vector<Vec3>& force, double h, State& state,
-                    StepReport& report) {
+// Projects the limits, with hard planes as constraints among them; velocities follow.
+void enforce_limits(const Model& model, const Controls& controls, const std::vector<Vec3>& force,
+                    double h, State& state, StepReport& report) {
   const std::vector<Vec3> predicted = state.position;
   LimitSweep sweep{1, 1};
   while (sweep.over > 0 && report.limit_sweeps < model.limit_sweeps) {
     sweep = sweep_limits(model, state.position);
     if (sweep.moved > 0) {
       ++report.limit_sweeps;
-      lift_onto_planes(model, state.time + h, state.position);
+      lift_onto_planes(model, controls, state.time + h, state.position);
     }
   }
   if (report.limit_sweeps == 0) return;
@@ -180,17 +177,17 @@ StepReport VerletStepper::step(double h, const Controls& controls, State& state)
   const std::vector<Vec3>& force = tangled.empty() ? found.force : recovering;
   if (contacts_) before_ = state.position;
   add_work_of_loads(model_, force, h, state);
-  add_work_of_obstacles(model_, h, state);
+  add_work_of_obstacles(model_, controls, h, state);
   const Index broken = move_free_nodes(model_, force, h, state);
-  move_pins(model_, force, h, state);
+  move_pins(model_, controls, force, h, state);
   if (broken == none) {
     if (contacts_) {
-      const ContactReport contact = contacts_->step(before_, force, h, state);
+      const ContactReport contact = contacts_->step(controls, before_, force, h, state);
       report.contacts = contact.contacts;
       report.deepest = contact.deepest;
       report.friction = contact.friction;
     }
-    if (!model_.limited.empty()) enforce_limits(model_, force, h, state, report);
+    if (!model_.limited.empty()) enforce_limits(model_, controls, force, h, state, report);
     if (model_.has_volume_limit) enforce_volume(model_, force, h, volume_limit_, state, report);
   }
   state.last_step = h;

@@ -29,11 +29,9 @@ bool path_moves(const Path& path, double from, double to) {
   return false;
 }
 
-// Whether pins or obstacles move at any time between `from` and `to`.
-bool model_is_moved(const Model& model, double from, double to) {
-  const auto goes_on = [&](const auto& thing) { return path_moves(thing.path, from, to); };
-  return std::any_of(model.pins.begin(), model.pins.end(), goes_on) ||
-         std::any_of(model.obstacles.begin(), model.obstacles.end(), goes_on);
+// Whether pins, obstacles or tools move anywhere between the times `from` and `to`.
+bool anything_is_moved(const Controls& controls, double from, double to) {
+  return any_path(controls, [&](const Path& path) { return path_moves(path, from, to); });
 }
 
 class VerletSteps : public Stepper {
@@ -78,7 +76,7 @@ class VerletSteps : public Stepper {
         watch_stable_step(model_, controls, state.position, h, memory.stiff_mode, forces());
     const bool stirred =
         memory.stable_step < calm * before ||
-        model_is_moved(model_, state.time, state.time + static_cast<double>(last_watch) * h);
+        anything_is_moved(controls, state.time, state.time + static_cast<double>(last_watch) * h);
     memory.watch_interval = stirred ? first_watch : std::min(2 * memory.watch_interval, last_watch);
     memory.steps_to_watch = memory.watch_interval;
     return memory.stable_step;

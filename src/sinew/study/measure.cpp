@@ -114,10 +114,12 @@ double Experiment::stress(int row, int column) const {
 }
 
 double Experiment::distance_from_path(const Pin& pin) const {
+  const auto p = static_cast<std::size_t>(&pin - model_.pins.data());
+  const Path& path = world_.controls().pin_paths[p];
   double farthest = 0.0, largest_move = 0.0;
   for (Index i = 0; i < model_.body_node_count(); ++i) {
     const Vec3& X = model_.rest_position[uz(i)];
-    const Vec3 goal = pin.path.at(run_.state.time, X);
+    const Vec3 goal = path.at(run_.state.time, X);
     farthest = std::max(farthest, (run_.state.position[uz(i)] - goal).norm());
     largest_move = std::max(largest_move, (goal - X).norm());
   }
@@ -185,7 +187,7 @@ double Experiment::measure(const Quantity& q) {
     case Kind::obstacle: {
       const Obstacle& obstacle = named(model_.obstacles, q, "obstacle");
       const auto o = static_cast<std::size_t>(&obstacle - model_.obstacles.data());
-      return read_obstacles(model_, run_.state, world_.finder())[o].force[axis];
+      return read_obstacles(model_, world_.controls(), run_.state, world_.finder())[o].force[axis];
     }
     case Kind::contact_time:
       return contact_time_;
