@@ -27,7 +27,8 @@ void report(benchmark::State& state, const SurfaceContacts& contacts,
             const std::vector<Contact>& found) {
   Hash h;
   for (const Contact& c : found) {
-    h.value(c.id);
+    h.value(static_cast<int>(c.id.kind));
+    for (const Index i : {c.id.owner, c.id.feature, c.id.partner}) h.value(i);
     h.value(c.gap);
   }
   state.SetLabel("contacts " + hex(h.digest()));

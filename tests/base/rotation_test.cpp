@@ -12,9 +12,9 @@ TEST(Rotation, TurnsOneDirectionIntoTheOther) {
     for (const Vec3& b : directions) {
       const Eigen::Quaterniond q = rotation_between(a, 2.0 * b);
       EXPECT_NEAR(q.norm(), 1.0, 1e-12);
-      EXPECT_LT((q * a.normalized() - b.normalized()).norm(), 1e-6);
+      EXPECT_LT((q * a.normalized() - b.normalized()).norm(), 1e-12);
       // The shortest: no rotation about the directions themselves.
-      EXPECT_NEAR(q.vec().dot(a.normalized()), 0.0, 1e-9);
+      EXPECT_NEAR(q.vec().dot(a.normalized()), 0.0, 1e-12);
     }
   }
 }

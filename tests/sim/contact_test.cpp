@@ -266,5 +266,28 @@ TEST(Contact, TheGroundAndAPlaneObstacleGiveTheSameBitsWithEveryStepper) {
   }
 }
 
+// A step takes the box three to three hundred times the thickness of the obstacle that it hits, at
+// any part of the step.
+TEST(Contact, ImplicitStepsDoNotPassThroughThinObstacles) {
+  const std::string plates[] = {
+      "shape = \"box\"\nsize = [2, 1e-2, 2]\n", "shape = \"box\"\nsize = [2, 1e-4, 2]\n",
+      "shape = \"cylinder\"\naxis = [0, 1, 0]\nradius = 1\nlength = 1e-3\n"};
+  for (const std::string scheme : {"sdirk2", "backward-euler"}) {
+    for (const std::string& plate : plates) {
+      for (const double height : {0.2, 0.205, 0.21, 0.215, 0.22}) {
+        Trial r(parse_scene("duration = 0.5\nstepper = \"implicit\"\nscheme = \"" + scheme +
+                                "\"\ndt = 0.0166\n[body.box]\nshape = \"box\"\n"
+                                "size = [0.1, 0.1, 0.1]\ncells = [2, 2, 2]\nyoung = 20e3\n"
+                                "position = [0, " +
+                                std::to_string(height) + ", 0]\n[obstacle.plate]\n" +
+                                "center = [0, 0, 0]\n" + plate,
+                            "plate.toml", "."));
+        r.to_the_end();
+        EXPECT_GT(r.center(0).y(), 0.03) << scheme << " " << plate << height;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace sinew

@@ -1,6 +1,6 @@
 #include "sinew/model/obstacle.h"
 
-#include <Eigen/Geometry>
+#include "sinew/base/rotation.h"
 
 namespace sinew {
 
@@ -9,7 +9,7 @@ Obstacle make_ground(const Vec3& point, const Vec3& normal, double restitution, 
   o.name = "the ground";
   o.center = point;
   o.shape = shapes::Plane{};
-  o.rotation = Eigen::Quaterniond::FromTwoVectors(Vec3::UnitY(), normal).toRotationMatrix();
+  o.rotation = rotation_between(Vec3::UnitY(), normal).toRotationMatrix();
   o.friction = friction;
   o.restitution = restitution;
   o.listed = false;

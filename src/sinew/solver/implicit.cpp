@@ -76,10 +76,12 @@ void ImplicitStepper::prepare(double h, const Controls& controls, const Implicit
 }
 
 // Backward Euler over h from the positions `from` with `velocity`, dashpots in their directions at
-// state.position, loads and pins at state.time. Moves the state's positions and sets its
+// state.position, loads and pins at state.time. Contacts are searched on the path from `path`,
+// where the nodes were `path_time` [s] before state.time. Moves the state's positions and sets its
 // velocities. Returns the forces of the model and the constraints on all nodes at the end [N], or
 // nothing if no equilibrium was found.
 std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velocity, double h,
+                                            const Field& path, double path_time,
                                             const Controls& controls,
                                             const ImplicitOptions& options, State& state,
                                             StepReport& report) {
@@ -91,7 +93,7 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
     constraints_ = std::make_unique<Constraints>(model_, about, std::sqrt(about), true);
     constrained_inertia_ = about;
   }
-  constraints_->start(controls, state, &from, h);
+  constraints_->start(controls, state, &path, path_time);
   const Field lag = state.position;
   const Field inertial = blend(1.0, from, h, velocity);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
@@ -119,7 +121,7 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
   report.products += newton.products;
   if (!newton.rests && !options.deadline) {  // starts again from the old positions
     state.position = stand;
-    constraints_->start(controls, state, &from, h);
+    constraints_->start(controls, state, &path, path_time);
     newton = minimise_augmented_lagrangian(objective, linear_, newton_options, forces_, state);
     report.newton += newton.newton;
     report.products += newton.products;
@@ -150,15 +152,18 @@ bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitO
   const double time = state.time;
   const double g = sdirk2_share;
   state.time = time + g * h;
-  auto pull = solve(x, v, g * h, controls, options, state, report);
+  auto pull = solve(x, v, g * h, x, g * h, controls, options, state, report);
   if (!pull) return false;
   if (act(state.reactions)) return true;
   const Field v1 = state.half_velocity;
   account(controls, x, time, (1.0 - g) * h, *pull, state);
   const Field x1 = state.position;
   state.time = time + h;
+  // The second part starts from extrapolated positions, which may be beyond a thin body or
+  // obstacle. Contacts are searched from the end of the first part. One that acts leads to backward
+  // Euler.
   pull = solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
-               g * h, controls, options, state, report);
+               g * h, x1, (1.0 - g) * h, controls, options, state, report);
   if (!pull) return false;
   account(controls, x1, time + g * h, g * h, *pull, state);
   return true;
@@ -170,7 +175,7 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
   const Field x = state.position;
   const Field v = state.half_velocity;
   state.time += h;
-  const auto pull = solve(x, v, h, controls, options, state, report);
+  const auto pull = solve(x, v, h, x, h, controls, options, state, report);
   if (!pull) return false;
   account(controls, x, state.time - h, h, *pull, state);
   if (constraints_->empty()) return true;

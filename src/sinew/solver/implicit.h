@@ -72,9 +72,9 @@ class ImplicitStepper {
                       State& state, StepReport& report);
   void account(const Controls& controls, const Field& before, double since, double weight,
                const Field& pull, State& state);
-  std::optional<Field> solve(const Field& from, const Field& velocity, double h,
-                             const Controls& controls, const ImplicitOptions& options, State& state,
-                             StepReport& report);
+  std::optional<Field> solve(const Field& from, const Field& velocity, double h, const Field& path,
+                             double path_time, const Controls& controls,
+                             const ImplicitOptions& options, State& state, StepReport& report);
 
   const Model& model_;
   ForceEvaluator forces_;                    // in double precision
