@@ -129,7 +129,7 @@ Vec3 World::held_at(GrabHandle handle) const {
 }
 
 Vec3 World::pull(GrabHandle handle) const {
-  return grab_pull(*model_, controls_->grabs[index_of(handle)], run_.state.position);
+  return grab_force(*model_, controls_->grabs[index_of(handle)], run_.state.position);
 }
 
 std::vector<GrabHandle> World::grabs() const {

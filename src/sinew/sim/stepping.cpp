@@ -135,7 +135,7 @@ bool Stepping::too_long(const RunState& run, double stable, double slack) const 
   return run.step > stable && !options_.allow_unstable;
 }
 
-// Adapts the length of the steps to the stable step if it was estimated anew.
+// Adapts the length of the steps to the stable step if it was estimated again.
 void Stepping::watch(const Controls& controls, RunState& run) {
   const auto stable = stepper_->watch(run.step, controls, run.state, run.memory);
   if (!stable) return;
@@ -167,7 +167,7 @@ bool Stepping::one_step(const Controls& controls, RunState& run, const std::atom
   ++run.work.steps;
   run.work.seconds += seconds_since(start);
   if (report.stopped) {
-    run.steps_left = 0;  // the rest of the frame is planned anew when the run continues
+    run.steps_left = 0;  // the rest of the frame is planned again when the run continues
     return false;
   }
   --run.steps_left;
