@@ -151,8 +151,8 @@ TEST(World, GrabsAndToolsStayWhenValuesChange) {
   w.advance_frame(nullptr);
   const Vec3 hand = w.state().position[0] + Vec3(0.01, 0, 0);
   const GrabHandle grab = w.grab(0, 0.03, hand);
-  EXPECT_LT(w.pull(grab).norm(), 1e-12);
-  EXPECT_LT((w.held_at(grab) - hand).norm(), 1e-12);
+  EXPECT_LT(w.force(grab).norm(), 1e-12);
+  EXPECT_LT((w.unloaded_target(grab) - hand).norm(), 1e-12);
   const ToolHandle tool = w.add_tool(Vec3(0.3, 0, 0), 0.03, 1e6);
   w.set_gravity(Vec3(0, 0, 1));
   const std::vector<Vec3> before = w.state().position;
@@ -199,7 +199,7 @@ TEST(World, AnotherOneGoesOnWithTheSameBits) {
     }
     EXPECT_EQ(a.state().hash(), b.state().hash());
   }
-  EXPECT_GT(a.pull(grab).norm(), 0.0);
+  EXPECT_GT(a.force(grab).norm(), 0.0);
 }
 
 TEST(World, ARunThatDivergesIsPutBackToWhatWasKept) {

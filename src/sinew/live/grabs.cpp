@@ -55,7 +55,7 @@ std::vector<HandStatus> Grabs::status(const sim::World& world) const {
   std::vector<HandStatus> out;
   for (int i = 0; i < most_hands; ++i)
     if (const std::optional<Hand>& h = hands_[uz(i)])
-      out.push_back({i, world.held_at(h->grab), h->point, world.pull(h->grab)});
+      out.push_back({i, world.unloaded_target(h->grab), h->point, world.force(h->grab)});
   return out;
 }
 

@@ -176,7 +176,7 @@ void Runner::publish() {
     Status status = session_.status();
     status.rate = rate_;
     if (status.limit.empty() && rate_ > 0.0 && rate_ < 0.9 * status.time_scale) {
-      status.limit = "the machine has other things to do as well";
+      status.limit = "the processor is busy with other work";
     }
     next.status = std::make_shared<Status>(std::move(status));
     status_at_ = now;

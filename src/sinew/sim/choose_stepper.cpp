@@ -39,7 +39,7 @@ void recover(const Model& model, State& state) {
   put_at_rest_shape(model, find_tangled(model, find_low_tets(model, state.position)), state);
 }
 
-struct Trial {
+struct TrialCost {
   double newton = 0.0;    // Newton steps a frame
   double products = 0.0;  // Hessian products a frame
   double work = 0.0;      // of a frame, in Verlet steps in double precision
@@ -73,8 +73,8 @@ class Policy {
   }
 
   // Nothing if a step finds no equilibrium.
-  std::optional<Trial> try_steps(const StepperChoice& choice) const {
-    Trial trial;
+  std::optional<TrialCost> try_steps(const StepperChoice& choice) const {
+    TrialCost trial;
     State state = start_;
     StepMemory memory = choice.memory;
     recover(model_, state);

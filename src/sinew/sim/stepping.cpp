@@ -238,8 +238,8 @@ void Stepping::require_stable(const Controls& controls, RunState& run, double h)
   throw Error(
       ErrorKind::unstable,
       fmt::format("the step {:.4g} s is above the largest stable one, {:.4g} s", h, longest),
-      "take a smaller step, or advance(), which takes stable ones; or a softer material, a coarser "
-      "mesh or stepper = \"implicit\"");
+      "use a smaller step, or advance(), which chooses a stable one; or a softer material, a "
+      "coarser mesh or stepper = \"implicit\"");
 }
 
 double Stepping::prepare(const Controls& controls, RunState& run) {

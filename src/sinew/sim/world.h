@@ -139,8 +139,8 @@ class World {
   void release(GrabHandle handle);
   std::vector<GrabHandle> grabs() const;
   Vec3 target(GrabHandle handle) const;
-  Vec3 held_at(GrabHandle handle) const;  // the target at which it would not pull [m]
-  Vec3 pull(GrabHandle handle) const;     // on the tissue [N]
+  Vec3 unloaded_target(GrabHandle handle) const;  // the target at which it exerts no force [m]
+  Vec3 force(GrabHandle handle) const;            // on the tissue [N]
 
   // ---- states (saved_state.cpp) ----
   std::string save() const;

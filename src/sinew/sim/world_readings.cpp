@@ -84,7 +84,7 @@ void World::find_contacts_now() {
   arena_.run([&] {
     const State& s = run_.state;
     if (ContactFinder* f = finder())
-      f->find(*controls_, s.position, s.position, s.time, s.time, touching_distance(*model_),
+      f->find(*controls_, s.position, s.position, s.time, s.time, contact_distance(*model_),
               contacts_);
   });
   contacts_of_ = changes_;

@@ -158,7 +158,7 @@ std::vector<Resting> resting_groups(const Model& model, const Controls& controls
       throw Error(ErrorKind::input,
                   fmt::format("body '{}' has no rest state: nothing holds it against {:.4g} N{}",
                               model.bodies[b].name, lacks.norm(),
-                              planes ? " (rest states know no friction)" : ""),
+                              planes ? " (rest states ignore friction)" : ""),
                   "pin it, attach it, or take stepper = \"verlet\" or \"implicit\"");
     }
     if (g == b && net[g].norm() > 1e-6 * size[g]) out.push_back({g, best});

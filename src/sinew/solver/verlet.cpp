@@ -142,10 +142,10 @@ Index suspect_spring(const Model& model, const State& state, Index node) {
   std::string spring;
   const Index s = suspect_spring(model, state, node);
   if (s >= 0) {
-    spring = fmt::format("; its spring {} ({} to {}, k = {:.4g} N/m, l0 = {:.4g} m) pulled hardest",
-                         s, model.node_name(model.springs[uz(s)][0]),
-                         model.node_name(model.springs[uz(s)][1]), model.stiffness[uz(s)],
-                         model.rest_length[uz(s)]);
+    spring = fmt::format(
+        "; its spring {} ({} to {}, k = {:.4g} N/m, l0 = {:.4g} m) carries the largest force", s,
+        model.node_name(model.springs[uz(s)][0]), model.node_name(model.springs[uz(s)][1]),
+        model.stiffness[uz(s)], model.rest_length[uz(s)]);
   }
   throw Error(ErrorKind::diverged,
               fmt::format("the state {} at t = {:.6g} s (step {}): {}{}",
