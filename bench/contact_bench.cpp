@@ -50,9 +50,9 @@ void LyingBeams(benchmark::State& state) {
     spec.regions = {"rest"};
     add_body(model, spec);
   }
-  model.touch = Touch{};
+  model.body_contact = BodyContact{};
   finish(model);
-  build_touch_surface(model);
+  build_contact_surface(model);
   std::vector<std::vector<Vec3>> x(8, model.rest_position);
   std::uint64_t n = 0;
   for (auto& some : x) {
@@ -111,7 +111,7 @@ void AnswerToLyingBeams(benchmark::State& state) {
     answer = solve_contacts(model, found, force, h, copy, scratch);
   }
   state.counters["contacts"] = static_cast<double>(found.size());
-  state.counters["push"] = static_cast<double>(answer.contacts);
+  state.counters["active"] = static_cast<double>(answer.contacts);
   state.counters["sweeps"] = answer.sweeps;
 }
 
@@ -120,8 +120,8 @@ void LiverAgainstItself(benchmark::State& state) {
   const ThreadLimit one(1);
   const std::string name = state.range(0) == 1 ? "liver-fine" : "liver";
   Model model = build_model(load_scene(SINEW_SOURCE_DIR "/scenes/" + name + ".toml", {}));
-  model.touch = Touch{.bodies = true, .self = true};
-  build_touch_surface(model);
+  model.body_contact = BodyContact{.bodies = true, .self = true};
+  build_contact_surface(model);
   SurfaceContacts contacts(model);
   std::vector<Contact> found;
   std::vector<Vec3> x = model.rest_position;

@@ -131,9 +131,9 @@ int main() {
                                  const std::function<void()>& call) {
     count(name, counted, springs.model.spring_count(), "spring", call);
   };
-  std::vector<Vec3> pull;
+  std::vector<Vec3> spring_force;
   count_springs("double_springs", counted_double_springs,
-                [&] { compute_spring_forces(springs.model, springs.state, pull); });
+                [&] { compute_spring_forces(springs.model, springs.state, spring_force); });
   count_springs("double_spring_step", counted_double_spring_step, [&] { verlet(springs); });
   PackedForces packed_pull(springs.model);
   count_springs("single_springs", counted_single_springs,

@@ -45,7 +45,7 @@ int main(int argc, char** argv) {
   if (meshes.empty()) meshes = {4, 8, 17};
   const Mat3 turn = Eigen::AngleAxisd(std::numbers::pi / 2.0, Vec3(1.0, 1.0, 0.0).normalized())
                         .toRotationMatrix();
-  fmt::print("{:>8} {:>6} {:>12} {:>10} {:>10}\n", "E [Pa]", "W(k)", "way [m]", "loss", "turned");
+  fmt::print("{:>8} {:>6} {:>12} {:>10} {:>10}\n", "E [Pa]", "W(k)", "u [m]", "loss", "turned");
   for (const double young : {1e4, 1e6, 1e9}) {
     for (const int k : meshes) {
       const Model model = build_model(
@@ -56,13 +56,13 @@ int main(int argc, char** argv) {
       StaticOptions options;
       options.tolerance = 1e-6;
       StaticSolver(model).solve(initial_controls(model), 0.0, options, state);
-      double way = 0.0;
+      double displacement = 0.0;
       for (std::size_t i = 0; i < state.position.size(); ++i) {
-        way = std::max(way, (state.position[i] - model.rest_position[i]).norm());
+        displacement = std::max(displacement, (state.position[i] - model.rest_position[i]).norm());
       }
       const double straight = loss(model, state);
       for (Vec3& x : state.position) x = turn * x;
-      fmt::print("{:8.0e} {:6} {:12.3g} {:10.1e} {:10.1e}\n", young, k, way, straight,
+      fmt::print("{:8.0e} {:6} {:12.3g} {:10.1e} {:10.1e}\n", young, k, displacement, straight,
                  loss(model, state));
     }
   }

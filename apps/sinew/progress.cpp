@@ -109,14 +109,15 @@ namespace {
 // Interventions of a run: changed steps and inversion recovery; empty if there were none.
 std::string interventions(const Summary& s) {
   std::string text;
-  const auto add = [&](std::int64_t count, const char* what) {
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", grouped(count), what);
+  const auto add = [&](std::int64_t count, const char* what, const char* before = "") {
+    if (count == 0) return;
+    text += fmt::format("{}{}{} {}", text.empty() ? "" : ", ", before, grouped(count), what);
   };
   add(s.step_reductions, "times shorter");
   add(s.step_increases, "times longer");
   add(s.step_cuts, "cut in half");
-  add(s.recovery_steps, "led a tangled body back");
-  add(s.peak_inverted_tets, "tets inverted at the most");
+  add(s.recovery_steps, "with inversion recovery");
+  add(s.peak_inverted_tets, "tets inverted at once", "at most ");
   return text;
 }
 

@@ -50,8 +50,8 @@ TEST(Boxes, FindThoseThatOverlap) {
 
 TEST(Boxes, TakeOverWhatOverlapsAndSweepIt) {
   RandomBoxes random;
-  const Vec3 way(0.3, -0.2, 0.0);
-  const double off = 0.05;
+  const Vec3 displacement(0.3, -0.2, 0.0);
+  const double margin = 0.05;
   for (Index count = 0; count < 40; ++count) {
     Boxes from, to;
     std::vector<Box> plain;
@@ -61,14 +61,14 @@ TEST(Boxes, TakeOverWhatOverlapsAndSweepIt) {
     }
     to.add(random.next(), 1000);
     const Box with = random.next().grown(0.3);
-    to.add_overlapping(from, with, way, off);
+    to.add_overlapping(from, with, displacement, margin);
     const Box probe = random.next().grown(0.1);
     std::vector<Index> found;
     to.find(probe, found);
     for (Index i = 0; i < count; ++i) {
       Box swept = plain[uz(i)];
-      swept.add(Box{plain[uz(i)].lo + way, plain[uz(i)].hi + way});
-      const bool expected = plain[uz(i)].overlaps(with) && swept.grown(off).overlaps(probe);
+      swept.add(Box{plain[uz(i)].lo + displacement, plain[uz(i)].hi + displacement});
+      const bool expected = plain[uz(i)].overlaps(with) && swept.grown(margin).overlaps(probe);
       EXPECT_EQ(std::count(found.begin(), found.end(), i), expected ? 1 : 0);
     }
   }

@@ -7,7 +7,7 @@
 #include "sinew/base/parallel.h"
 #include "sinew/base/random.h"
 #include "sinew/contact/contact_finder.h"
-#include "sinew/contact/touch_surface.h"
+#include "sinew/contact/contact_surface.h"
 #include "sinew/forces/obstacles.h"
 #include "tests/support/models.h"
 
@@ -71,8 +71,8 @@ TEST(Colliders, ABoxOnAPlaneTouchesWithTheNodesOfOneSide) {
     EXPECT_EQ(c.weight[0], 1.0);
     EXPECT_EQ(c.normal, Vec3::UnitY());
     EXPECT_NEAR(c.gap, -0.001, 1e-15);
-    EXPECT_NEAR(c.moment, 0.5, 1e-12);
-    EXPECT_EQ(c.way, Vec3::Zero());
+    EXPECT_NEAR(c.time_of_impact, 0.5, 1e-12);
+    EXPECT_EQ(c.anchor_displacement, Vec3::Zero());
     EXPECT_EQ(c.friction, 0.3);
     EXPECT_EQ(c.restitution, 0.7);
     EXPECT_EQ(c.id.obstacle(), 0);
@@ -81,7 +81,7 @@ TEST(Colliders, ABoxOnAPlaneTouchesWithTheNodesOfOneSide) {
   s.move(Vec3(0, 0.001, 0), Vec3(0, 0.001, 0));
   EXPECT_TRUE(s.find().empty());
   EXPECT_EQ(s.find(0.002).size(), 25U);
-  EXPECT_EQ(s.find(0.002)[0].moment, 1.0);
+  EXPECT_EQ(s.find(0.002)[0].time_of_impact, 1.0);
 }
 
 TEST(Colliders, WhatIsFarGivesNothing) {
@@ -109,10 +109,10 @@ TEST(Colliders, AMovingTurningPlaneCarriesItsPoints) {
   for (const Contact& c : contacts) {
     EXPECT_LT((c.normal - Vec3(-std::sin(0.1), std::cos(0.1), 0)).norm(), 1e-12);
     const Vec3 place = s.to[uz(c.node[0])] - c.gap * c.normal;  // on the plane
-    EXPECT_LT((place - c.way - before.at(after.own(place))).norm(), 1e-15);
+    EXPECT_LT((place - c.anchor_displacement - before.at(after.own(place))).norm(), 1e-15);
     EXPECT_LT(c.gap, 0.0);
-    EXPECT_GT(c.moment, 0.0);
-    EXPECT_LT(c.moment, 1.0);
+    EXPECT_GT(c.time_of_impact, 0.0);
+    EXPECT_LT(c.time_of_impact, 1.0);
   }
 }
 
@@ -127,8 +127,8 @@ TEST(Colliders, AThinBoxIsNotTunnelledThrough) {
     if (c.count != 1) continue;
     EXPECT_EQ(c.normal, Vec3::UnitY());
     EXPECT_LT(c.gap, 0.0);
-    EXPECT_GT(c.moment, 0.0);
-    EXPECT_LT(c.moment, 1.0);
+    EXPECT_GT(c.time_of_impact, 0.0);
+    EXPECT_LT(c.time_of_impact, 1.0);
   }
   // Deeper than its middle, but not through.
   s.move(Vec3(0, -0.1494, 0), Vec3(0, -0.1503, 0));
@@ -150,7 +150,7 @@ TEST(Colliders, AFastObstacleIsSeenTheSame) {
     EXPECT_EQ(a[i].id, b[i].id);
     EXPECT_NEAR(a[i].gap, b[i].gap, 1e-12);
     EXPECT_LT((a[i].normal - b[i].normal).norm(), 1e-9);
-    EXPECT_LT((a[i].way - Vec3(0, -1, 0)).norm(), 1e-12);
+    EXPECT_LT((a[i].anchor_displacement - Vec3(0, -1, 0)).norm(), 1e-12);
   }
 }
 
@@ -306,7 +306,7 @@ TEST(Colliders, ContactsWithAMeshHaveAnAnchorAndNoRigidNodes) {
                                      Vec3(-1, -0.051, 1)};
   const std::vector<Triangle> triangles = {{0, 2, 1}, {0, 3, 2}};
   add_mesh_obstacle(model, o, corners, triangles);
-  build_touch_surface(model);
+  build_contact_surface(model);
   finish(model);
   EXPECT_EQ(model.node_name(model.body_node_count() + 2), "obstacle sheet, vertex 2");
   const std::vector<Vec3> from = model.rest_position;
@@ -321,7 +321,7 @@ TEST(Colliders, ContactsWithAMeshHaveAnAnchorAndNoRigidNodes) {
     EXPECT_EQ(c.friction, 0.2);
     EXPECT_EQ(c.restitution, 0.4);
     EXPECT_LT((c.normal - Vec3::UnitY()).norm(), 1e-12);
-    EXPECT_LT((c.way - Vec3(0, 0.002, 0)).norm(), 1e-12);
+    EXPECT_LT((c.anchor_displacement - Vec3(0, 0.002, 0)).norm(), 1e-12);
     EXPECT_NEAR(c.gap, -0.001, 1e-12);
     EXPECT_NEAR(contact_gap(c, to), c.gap, 1e-12);
     for (int a = 0; a < c.count; ++a)
@@ -339,7 +339,7 @@ TEST(Colliders, AVertexOfAMeshPushesATriangle) {
                                      Vec3(-0.02, 0.08, -0.02), Vec3(0.008, 0.08, 0.03)};
   const std::vector<Triangle> triangles = {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}};
   add_mesh_obstacle(model, o, corners, triangles);
-  build_touch_surface(model);
+  build_contact_surface(model);
   finish(model);
   const std::vector<Vec3> from = model.rest_position;
   std::vector<Vec3> to = from;

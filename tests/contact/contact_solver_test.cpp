@@ -143,8 +143,8 @@ TEST(ContactSolver, CollidersThatMoveDoWorkAndFeelTheForce) {
   c.node[0] = 0;
   c.weight[0] = 1.0;
   c.count = 1;
-  c.way = Vec3(0, 3.0 * h, 0);  // a piston at 3 m/s
-  c.anchor = c.way;
+  c.anchor_displacement = Vec3(0, 3.0 * h, 0);  // a piston at 3 m/s
+  c.anchor = c.anchor_displacement;
   c.id.owner = 0;
   const ContactReport report = m.step({c});
   EXPECT_NEAR(m.state.half_velocity[0].y(), 3.0, 1e-12);
@@ -172,7 +172,7 @@ TEST(ContactSolver, BouncesThatShareNodesMakeNoEnergy) {
         c.count = 2;
         c.restitution = 1.0;
         c.normal = vec().normalized();
-        c.anchor = contact_offset(c, m.state.position);  // they touch
+        c.anchor = contact_offset(c, m.state.position);  // gap 0
         contacts.push_back(c);
       }
     }
@@ -216,9 +216,9 @@ TEST(ContactSolver, BeginsWithWhatItPushedWithInTheStepBefore) {
   EXPECT_GT(m.step({mass_on_plane(0.6, lying)}).sweeps, 1);
   for (int i = 0; i < 3; ++i) {
     ASSERT_EQ(m.state.reactions.contacts.size(), 1U);
-    const ContactPush& p = m.state.reactions.contacts[0];
+    const ContactForce& p = m.state.reactions.contacts[0];
     EXPECT_EQ(p.id, lying);
-    EXPECT_LT((p.push - Vec3(-10.0, 20.0, 0.0)).norm(), 1e-9);  // also after a first half-step
+    EXPECT_LT((p.force - Vec3(-10.0, 20.0, 0.0)).norm(), 1e-9);  // also after a first half-step
     EXPECT_EQ(m.step({mass_on_plane(0.6, lying)}).sweeps, 1);
     EXPECT_LT(m.state.half_velocity[0].norm(), 1e-12);
   }
@@ -242,11 +242,11 @@ TEST(ContactSolver, FrictionsConeHoldsWhateverItBeginsWith) {
        {Vec3(-500.0, 20.0, 0.0), Vec3(0.0, -30.0, 90.0), Vec3(3.0, 900.0, 2.0)}) {
     Masses m = lying_mass();
     m.state.last_step = h;
-    ContactPush p;
+    ContactForce p;
     p.id = lying;
     p.node[0] = 0;
     p.weight[0] = 1.0;
-    p.push = stale;
+    p.force = stale;
     m.state.reactions.contacts = {p};
     m.step({mass_on_plane(0.3, lying)});
     const Vec3 impulse = 2.0 * m.state.half_velocity[0] - h * m.force[0];
@@ -281,7 +281,7 @@ TEST(ContactSolver, RandomTanglesOfContactsKeepMomentumAndNeverAddEnergy) {
         rest += c.weight[a];
       }
       c.weight[3] = -rest;
-      c.anchor = contact_offset(c, x) + 1e-4 * vec();  // nearly touching
+      c.anchor = contact_offset(c, x) + 1e-4 * vec();  // almost in contact
       contacts.push_back(c);
     }
     const Vec3 before = m.momentum();

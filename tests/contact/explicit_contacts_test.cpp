@@ -45,12 +45,12 @@ struct Standing {
     }
   }
   // The node was held by that multiple of its force in the step before.
-  void held(Index node, double multiple, const Vec3& way = Vec3::UnitY()) {
-    ContactPush p;
+  void held(Index node, double multiple, const Vec3& direction = Vec3::UnitY()) {
+    ContactForce p;
     p.id = {ContactKind::node_shape, 0, node, -1};
     p.node[0] = node;
     p.weight[0] = 1.0;
-    p.push = multiple * force[uz(node)].norm() * way;
+    p.force = multiple * force[uz(node)].norm() * direction;
     state.reactions.contacts.push_back(p);
   }
   ContactReport step(ExplicitContacts& contacts) {
@@ -94,7 +94,7 @@ TEST(ExplicitContacts, AContactThatIsLostWhereItIsHeldIsFoundWhereItIsPredicted)
   for (const Index i : s.bottom) s.held(i, 1.0);
   const Index lost = s.bottom[3];
   s.force[uz(lost)] *= 2.5;  // as much of its push counts, which leads it out of reach
-  s.state.reactions.contacts[3].push *= 2.5;
+  s.state.reactions.contacts[3].force *= 2.5;
   const ContactReport report = s.step();
   EXPECT_EQ(report.contacts, std::ssize(s.bottom));
   EXPECT_LT(report.deepest, 1e-15);

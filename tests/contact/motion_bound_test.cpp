@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/contact/touch_models.h"
+#include "tests/contact/contact_models.h"
 
 namespace sinew {
 namespace {
@@ -25,12 +25,12 @@ struct Clusters {
     std::uniform_real_distribution<double> u(-size, size);
     return {u(rng), u(rng), u(rng)};
   }
-  void move(double turn, double way, double tremble) {
+  void move(double turn, double distance, double tremble) {
     const Mat3 whole = random_rotation(rng, 1.0);  // of both together: changes no distance
     const Vec3 shift = vec(1.0);
     for (const auto* part : {&p, &q}) {
       const Mat3 own = random_rotation(rng, turn);
-      const Vec3 to = vec(way);
+      const Vec3 to = vec(distance);
       for (const Index i : *part) {
         x[uz(i)] = whole * (own * x[uz(i)] + to) + shift + vec(tremble);
       }
@@ -46,14 +46,14 @@ TEST(RigidMotionBound, BoundsHowFarDistancesHaveChanged) {
     double largest_share = 0.0;
     for (int n = 0; n < 3; ++n) {
       const std::vector<Vec3> then = c.x;
-      p.look({then, then}, whole, false);
-      q.look({then, then}, whole, false);
+      p.update({then, then}, whole, false);
+      q.update({then, then}, whole, false);
       const RigidMotionBound::Mark p_mark = p.mark(), q_mark = q.mark();
       for (int k = 0; k < 6; ++k) {
         const std::vector<Vec3> from = c.x;
         c.move(0.02, 0.0005, 0.0001);
-        p.look({from, c.x}, whole, false);
-        q.look({from, c.x}, whole, false);
+        p.update({from, c.x}, whole, false);
+        q.update({from, c.x}, whole, false);
         const double bound = changed_since(p, p_mark, q, q_mark);
         const double own = changed_since(p, p_mark, p, p_mark);
         double most = 0.0, most_own = 0.0;
@@ -84,14 +84,14 @@ TEST(RigidMotionBound, WhatMovesAndTurnsTogetherDoesNotCount) {
   Clusters c(1);
   const MotionBound whole({0}, c.x);
   RigidMotionBound p(c.p, c.x), q(c.q, c.x);
-  p.look({c.x, c.x}, whole, false);
-  q.look({c.x, c.x}, whole, false);
+  p.update({c.x, c.x}, whole, false);
+  q.update({c.x, c.x}, whole, false);
   const RigidMotionBound::Mark p_mark = p.mark(), q_mark = q.mark();
   for (int k = 0; k < 5; ++k) {
     const std::vector<Vec3> from = c.x;
     c.move(0.0, 0.0, 0.0);
-    p.look({from, c.x}, whole, false);
-    q.look({from, c.x}, whole, false);
+    p.update({from, c.x}, whole, false);
+    q.update({from, c.x}, whole, false);
   }
   EXPECT_LT(changed_since(p, p_mark, q, q_mark), 1e-4);
 }
@@ -100,15 +100,15 @@ TEST(MotionBound, BoundsHowFarNodesMoveAgainstEachOther) {
   Clusters c(2);
   MotionBound p(c.p, c.x), q(c.q, c.x);
   std::vector<Vec3> then = c.x;
-  p.look({then, then});
-  q.look({then, then});
+  p.update({then, then});
+  q.update({then, then});
   const MotionBound::Mark p_mark = p.mark(), q_mark = q.mark();
   for (int k = 0; k < 6; ++k) {
     const std::vector<Vec3> from = c.x;
     const Vec3 both = c.vec(0.1);
     for (Vec3& x : c.x) x += both + c.vec(0.001);
-    p.look({from, c.x});
-    q.look({from, c.x});
+    p.update({from, c.x});
+    q.update({from, c.x});
     double since = 0.0, within = 0.0;
     for (const Index i : c.p) {
       for (const Index j : c.q) {
@@ -118,7 +118,7 @@ TEST(MotionBound, BoundsHowFarNodesMoveAgainstEachOther) {
       }
     }
     EXPECT_LE(since, moved_since(p, p_mark, q, q_mark));
-    EXPECT_LE(within, apart(p.step(), q.step()));
+    EXPECT_LE(within, relative_displacement(p.step(), q.step()));
     EXPECT_LT(moved_since(p, p_mark, q, q_mark), 0.04);  // not what both do together
     if (k == 2) p.renew({from, c.x});
   }

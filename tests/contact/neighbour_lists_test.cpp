@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "sinew/base/parallel.h"
-#include "tests/contact/touch_models.h"
+#include "tests/contact/contact_models.h"
 
 namespace sinew {
 namespace {
@@ -18,8 +18,8 @@ using testing::surface_pair_model;
 
 // Every node with every triangle, every edge with every edge.
 std::vector<Contact> all_pairs(const Model& model, const Moves& moves) {
-  const NarrowPhase touching(model);
-  const TouchSurface& s = touching.surface();
+  const NarrowPhase narrow_phase(model);
+  const ContactSurface& s = narrow_phase.surface();
   std::vector<Plane> planes;
   for (const Triangle& t : s.triangles) planes.push_back(plane_of(moves.to, t));
   std::vector<Contact> found;
@@ -31,28 +31,29 @@ std::vector<Contact> all_pairs(const Model& model, const Moves& moves) {
   };
   for (Index a = 0; a < s.body_count; ++a) {
     for (Index b = a; b < s.owner_count(); ++b) {
-      if (!(a == b ? model.touch->self : model.touch->bodies)) continue;
-      std::vector<char> held(model.rest_position.size(), 0);
+      if (!(a == b ? model.body_contact->self : model.body_contact->bodies)) continue;
+      std::vector<char> near_other(model.rest_position.size(), 0);
       for (const auto& [from, to] : {std::pair(a, b), std::pair(b, a)}) {
         const std::vector<Index> all = ids(s.owner_triangles[uz(to)]);
         for (const Index slot : ids(s.owner_nodes[uz(from)])) {
-          const NodeTouch touch =
-              touching.node_touches(slot, to, {all, {}, 0.0}, planes, false, moves, c);
-          if (touch == NodeTouch::touches) found.push_back(c);
-          held[uz(s.nodes[uz(slot)])] |= touch != NodeTouch::none;
+          const NodeProximity proximity =
+              narrow_phase.node_contact(slot, to, {all, {}, 0.0}, planes, false, moves, c);
+          if (proximity == NodeProximity::contact) found.push_back(c);
+          near_other[uz(s.nodes[uz(slot)])] |= proximity != NodeProximity::none;
         }
         if (a == b) break;
       }
-      const auto carried = [&](Index e) {
-        return held[uz(s.edges[uz(e)][0])] && held[uz(s.edges[uz(e)][1])];
+      const auto ends_near = [&](Index e) {
+        return near_other[uz(s.edges[uz(e)][0])] && near_other[uz(s.edges[uz(e)][1])];
       };
       for (const Index e : ids(s.owner_edges[uz(a)])) {
         for (const Index f : ids(s.owner_edges[uz(b)])) {
-          if ((a == b && f <= e) || !touching.may_meet(e) || !touching.may_meet(f)) continue;
-          if (!touching.is_sharp(e, a == b) && !touching.is_sharp(f, a == b)) continue;
-          if (!touching.is_sharp(f, a == b) && carried(e)) continue;
-          if (!touching.is_sharp(e, a == b) && carried(f)) continue;
-          if (touching.edges_touch(e, f, false, moves, c)) found.push_back(c);
+          if ((a == b && f <= e) || !narrow_phase.may_contact(e) || !narrow_phase.may_contact(f))
+            continue;
+          if (!narrow_phase.is_sharp(e, a == b) && !narrow_phase.is_sharp(f, a == b)) continue;
+          if (!narrow_phase.is_sharp(f, a == b) && ends_near(e)) continue;
+          if (!narrow_phase.is_sharp(e, a == b) && ends_near(f)) continue;
+          if (narrow_phase.edge_contact(e, f, false, moves, c)) found.push_back(c);
         }
       }
     }
@@ -69,7 +70,7 @@ void expect_same(const std::vector<Contact>& a, const std::vector<Contact>& b) {
     EXPECT_EQ(a[i].weight, b[i].weight);
     EXPECT_EQ(a[i].normal, b[i].normal);
     EXPECT_EQ(a[i].gap, b[i].gap);
-    EXPECT_EQ(a[i].moment, b[i].moment);
+    EXPECT_EQ(a[i].time_of_impact, b[i].time_of_impact);
   }
 }
 
@@ -81,7 +82,7 @@ struct Motion {
       Mat3 f;
       for (double& v : f.reshaped()) v = 0.3 * speed * u(rng);
       rate.push_back(f);
-      way.push_back(speed * 0.1 * Vec3(u(rng), u(rng), u(rng)));
+      direction.push_back(speed * 0.1 * Vec3(u(rng), u(rng), u(rng)));
       phase.push_back(3.0 * u(rng));
     }
   }
@@ -94,7 +95,8 @@ struct Motion {
       const double s = std::sin(time + phase[b]) - std::sin(phase[b]);
       for (Index i = r.begin; i < r.end; ++i) {
         const Vec3 d = x[uz(i)] - centre;
-        x[uz(i)] += s * (way[b] + rate[b] * d) + 0.002 * std::sin(300.0 * d.x() + time) * way[b];
+        x[uz(i)] += s * (direction[b] + rate[b] * d) +
+                    0.002 * std::sin(300.0 * d.x() + time) * direction[b];
       }
     }
     return x;
@@ -102,7 +104,7 @@ struct Motion {
   const Model& model;
   std::mt19937 rng;
   std::vector<Mat3> rate;
-  std::vector<Vec3> way;
+  std::vector<Vec3> direction;
   std::vector<double> phase;
 };
 
@@ -117,7 +119,7 @@ Model crowd(unsigned seed) {
 }
 
 TEST(NeighbourLists, FindWhatAllPairsGive) {
-  std::size_t contacts = 0, edges = 0, on_the_way = 0;
+  std::size_t contacts = 0, edges = 0, during_step = 0;
 #ifdef SINEW_SANITIZED
   const unsigned seeds = 2;  // all pairs take a hundred times longer there
   const int steps = 2;
@@ -140,7 +142,7 @@ TEST(NeighbourLists, FindWhatAllPairsGive) {
       for (const Contact& c : found) {
         ++contacts;
         edges += c.weight[0] != 1.0;
-        on_the_way += c.moment > 0.0 && c.moment < 1.0;
+        during_step += c.time_of_impact > 0.0 && c.time_of_impact < 1.0;
         EXPECT_TRUE(std::isfinite(c.gap) && c.normal.allFinite());
         EXPECT_NEAR(c.normal.norm(), 1.0, 1e-9);
         EXPECT_NEAR(c.weight[0] + c.weight[1] + c.weight[2] + c.weight[3], 0.0, 1e-12);
@@ -155,7 +157,7 @@ TEST(NeighbourLists, FindWhatAllPairsGive) {
   if (seeds > 2) {
     EXPECT_GT(edges, seeds);
   }
-  EXPECT_GT(on_the_way, 2u * seeds);
+  EXPECT_GT(during_step, 2u * seeds);
 }
 
 TEST(NeighbourLists, SameBitsAtOneAndTwoThreads) {
@@ -179,11 +181,11 @@ TEST(NeighbourLists, LastWhileBodiesMoveTogetherAndCostNothingFarApart) {
   const TetMesh cube = box(Vec3(0.1, 0.1, 0.1), {4, 4, 4});
   const Model model =
       surface_pair_model({cube, moved(cube, Vec3(0, 0.1, 0))}, {true, true, 0.5, 0.0});
-  const Model apart =
+  const Model distant =
       surface_pair_model({cube, moved(cube, Vec3(0, 0.3, 0))}, {true, false, 0.5, 0.0});
-  SurfaceContacts contacts(model), far(apart);
+  SurfaceContacts contacts(model), far(distant);
   std::vector<Contact> found;
-  std::vector<Vec3> x = model.rest_position, y = apart.rest_position;
+  std::vector<Vec3> x = model.rest_position, y = distant.rest_position;
   for (int k = 0; k < 100; ++k) {
     std::vector<Vec3> to = x;
     for (Vec3& p : to) p += Vec3(0.0007, -0.0012, 0.0003);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "tests/contact/touch_models.h"
+#include "tests/contact/contact_models.h"
 
 namespace sinew {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "sinew/mesh/tet_mesh.h"
-#include "tests/contact/touch_models.h"
+#include "tests/contact/contact_models.h"
 
 namespace sinew {
 namespace {
@@ -40,7 +40,7 @@ TEST(SurfaceContacts, TwoCubesThatLieOnEachOther) {
     EXPECT_NEAR(std::abs(c.normal.y()), 1.0, 1e-12);
     EXPECT_EQ(c.normal.y() > 0.0, model.bodies[1].nodes.contains(c.node[0]));
     EXPECT_NEAR(c.weight[0] + c.weight[1] + c.weight[2] + c.weight[3], 0.0, 1e-15);
-    EXPECT_NEAR(c.moment, 0.0, 1e-9);
+    EXPECT_NEAR(c.time_of_impact, 0.0, 1e-9);
   }
 }
 
@@ -85,11 +85,11 @@ TEST(SurfaceContacts, AFastBallDoesNotTunnelThroughAMembrane) {
   const TetMesh membrane = box(Vec3(0.2, 0.001, 0.2), {20, 1, 20});
   const TetMesh ball = moved(sphere(0.02, 3), Vec3(0.0031, 0.05, 0.0042));
   const Model model = surface_pair_model({membrane, ball});
-  for (const double way : {0.01, 0.031, 0.05, 0.1, 0.8}) {
+  for (const double displacement : {0.01, 0.031, 0.05, 0.1, 0.8}) {
     std::vector<Vec3> to = model.rest_position;
     Index through = 0;
     for (Index i = model.bodies[1].nodes.begin; i < model.bodies[1].nodes.end; ++i) {
-      to[uz(i)].y() -= way;
+      to[uz(i)].y() -= displacement;
     }
     const std::vector<Contact> found = contacts_of(model, model.rest_position, to);
     for (const Contact& c : found) through += model.bodies[1].nodes.contains(c.node[0]);
@@ -97,7 +97,7 @@ TEST(SurfaceContacts, AFastBallDoesNotTunnelThroughAMembrane) {
     for (const Index i : model.surface.nodes) {
       if (model.bodies[1].nodes.contains(i)) expected += to[uz(i)].y() < 0.0005;
     }
-    EXPECT_EQ(through, expected) << way;
+    EXPECT_EQ(through, expected) << displacement;
     for (const Contact& c : found) {
       if (!model.bodies[1].nodes.contains(c.node[0]) || c.count != 4) continue;
       EXPECT_GT(c.normal.y(), 0.9);
@@ -140,12 +140,12 @@ TEST(SurfaceContacts, NothingGetsIntoAClosedSurfaceUnseen) {
       for (Index t = model.bodies[1].tets.begin; t < model.bodies[1].tets.end; ++t) {
         // Half of it towards the target.
         const Vec3 inwards = -model.rest_position[uz(model.tets[uz(t)][0])].normalized();
-        const Vec3 way = speed * (Vec3(u(rng), u(rng), u(rng)) + inwards);
-        for (const Index i : model.tets[uz(t)]) to[uz(i)] += way;
+        const Vec3 displacement = speed * (Vec3(u(rng), u(rng), u(rng)) + inwards);
+        for (const Index i : model.tets[uz(t)]) to[uz(i)] += displacement;
       }
-      std::vector<char> held(to.size(), 0);
+      std::vector<char> in_contact(to.size(), 0);
       for (const Contact& c : contacts_of(model, model.rest_position, to)) {
-        if (c.weight[0] == 1.0) held[uz(c.node[0])] = 1;
+        if (c.weight[0] == 1.0) in_contact[uz(c.node[0])] = 1;
         EXPECT_LE(c.gap, 0.0);
       }
       // Against the referee: every node that is inside a tet of the target at the end.
@@ -160,7 +160,7 @@ TEST(SurfaceContacts, NothingGetsIntoAClosedSurfaceUnseen) {
                signed_volume(a, b, p, d) > 0 && signed_volume(a, b, c, p) > 0;
         }
         inside += in;
-        seen += in && held[uz(i)];
+        seen += in && in_contact[uz(i)];
       }
       EXPECT_EQ(seen, inside) << speed;
       all_inside += inside;

@@ -44,10 +44,6 @@ TEST(Laws, LloydOnARegularTetByHand) {
   }
 }
 
-TEST(Laws, RegularEdgeInvertsTheVolume) {
-  EXPECT_NEAR(regular_edge(0.3 * 0.3 * 0.3 / (6 * std::sqrt(2.0))), 0.3, 1e-15);
-}
-
 TEST(Laws, VanGelderByHand) {
   // E V / l^2 with V = l^3/(6 sqrt 2): E l / (6 sqrt 2) = 10e3 * 0.02 / 8.485281 = 23.570226.
   Material material{.law = Law::vangelder, .young = 10e3};

@@ -17,14 +17,14 @@ constexpr double stiffness = 123.0;
 
 TEST(ObstacleLaw, ForceByHand) {
   // |r| = 0.5: 0.2 deep, pushed along (0.6, 0, 0.8) by 123 * 0.2.
-  const Vec3 f = obstacle_push(Vec3(0.3, 0.0, 0.4), radius, stiffness);
+  const Vec3 f = obstacle_force(Vec3(0.3, 0.0, 0.4), radius, stiffness);
   EXPECT_LT((f - 24.6 * Vec3(0.6, 0.0, 0.8)).norm(), 1e-13);
   EXPECT_NEAR(obstacle_energy(Vec3(0.3, 0.0, 0.4), radius, stiffness), 0.5 * 123 * 0.04, 1e-14);
 }
 
 TEST(ObstacleLaw, OutsideAndAtTheCentreThereIsNoForce) {
   for (const Vec3& r : {Vec3(0.8, 0, 0), Vec3(0.7, 0, 0), Vec3(0, 0, 0)}) {
-    EXPECT_EQ(obstacle_push(r, radius, stiffness), Vec3::Zero());
+    EXPECT_EQ(obstacle_force(r, radius, stiffness), Vec3::Zero());
     EXPECT_EQ(obstacle_stiffness_times(r, radius, stiffness, Vec3(1, 2, 3)), Vec3::Zero());
   }
 }
@@ -32,7 +32,7 @@ TEST(ObstacleLaw, OutsideAndAtTheCentreThereIsNoForce) {
 TEST(ObstacleLaw, ForceIsTheNegativeGradientOfTheEnergy) {
   const double h = 1e-6;
   for (const Vec3& r : {Vec3(0.3, -0.2, 0.1), Vec3(0.05, 0.02, -0.01), Vec3(0.5, 0.5, 0.5)}) {
-    const Vec3 f = obstacle_push(r, radius, stiffness);
+    const Vec3 f = obstacle_force(r, radius, stiffness);
     for (int c = 0; c < 3; ++c) {
       const Vec3 e = h * Vec3::Unit(c);
       const double slope =
@@ -47,8 +47,8 @@ TEST(ObstacleLaw, StiffnessIsTheNegativeGradientOfTheForce) {
   const double h = 1e-6;
   const Vec3 u(0.4, 0.1, -0.8);
   for (const Vec3& r : {Vec3(0.3, -0.2, 0.1), Vec3(0.1, 0.6, -0.2), Vec3(0.5, 0.5, 0.5)}) {
-    const Vec3 change = (obstacle_push(r + h * u, radius, stiffness) -
-                         obstacle_push(r - h * u, radius, stiffness)) /
+    const Vec3 change = (obstacle_force(r + h * u, radius, stiffness) -
+                         obstacle_force(r - h * u, radius, stiffness)) /
                         (2 * h);
     EXPECT_LT((obstacle_stiffness_times(r, radius, stiffness, u) + change).norm(),
               1e-7 * stiffness);

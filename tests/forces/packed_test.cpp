@@ -56,8 +56,8 @@ std::vector<Vec3> plain(const Model& m, const State& s, double* heat = nullptr) 
   std::vector<Vec3> f(s.position.size());
   for (Index i = 0; i < m.node_count(); ++i) {
     f[uz(i)] = gather_springs(m, of_springs, i);
-    if (!m.network_start.empty()) f[uz(i)] += network_pull(m, s.position, i);
-    if (m.has_volume) f[uz(i)] += push_of_tets(m, tets, i);
+    if (!m.network_start.empty()) f[uz(i)] += network_force(m, s.position, i);
+    if (m.has_volume) f[uz(i)] += volume_force(m, tets, i);
   }
   return f;
 }

@@ -99,20 +99,21 @@ TEST(RemoveTets, ForcesAreThoseOfAModelAssembledFromTheCutMesh) {
   viscous.viscosity = 2.0;
   for (const Material& material : {Material{}, springs, viscous}) {
     const Cut c(material);
-    Model anew;
-    add_body(anew, c.cut.bodies[0]);
-    anew.pins.push_back({"base", test::nodes_at(anew, 1, -0.05), {}});
-    const Index anchor = add_anchor(anew, "hook", Vec3(-0.2, 0.0, 0.0));
-    add_attachment(anew, c.cut.change.node[uz(c.hooked)], anchor, 40.0, 0.1, 0.1);
-    Load pull{"pull", test::nodes_at(anew, 1, 0.05), Vec3(0.0, 1.6, 0.0)};
+    Model rebuilt;
+    add_body(rebuilt, c.cut.bodies[0]);
+    rebuilt.pins.push_back({"base", test::nodes_at(rebuilt, 1, -0.05), {}});
+    const Index anchor = add_anchor(rebuilt, "hook", Vec3(-0.2, 0.0, 0.0));
+    add_attachment(rebuilt, c.cut.change.node[uz(c.hooked)], anchor, 40.0, 0.1, 0.1);
+    Load pull{"pull", test::nodes_at(rebuilt, 1, 0.05), Vec3(0.0, 1.6, 0.0)};
     pull.force *= static_cast<double>(pull.nodes.size()) / 16.0;
-    anew.loads.push_back(pull);
-    finish(anew);
+    rebuilt.loads.push_back(pull);
+    finish(rebuilt);
     const Model& cut = c.cut.model;
     const std::vector<Vec3> of_cut = test::forces_at(cut, initial_controls(cut), c.after).force;
-    const std::vector<Vec3> of_anew = test::forces_at(anew, initial_controls(anew), c.after).force;
-    for (std::size_t i = 0; i < of_anew.size(); ++i)
-      EXPECT_LT((of_cut[i] - of_anew[i]).norm(), 1e-13 * of_anew[i].norm() + 1e-15);
+    const std::vector<Vec3> of_rebuilt =
+        test::forces_at(rebuilt, initial_controls(rebuilt), c.after).force;
+    for (std::size_t i = 0; i < of_rebuilt.size(); ++i)
+      EXPECT_LT((of_cut[i] - of_rebuilt[i]).norm(), 1e-13 * of_rebuilt[i].norm() + 1e-15);
   }
 }
 

@@ -10,21 +10,21 @@ namespace {
 // Design 3.1 by hand: x_ij = (0, 3, 4) of length 5, k = 10, l0 = 4: spring force 10 * 1 along
 // (0, .6, .8); v_ij = (1, 2, 0): v.x / x.x = 6/25, c = 5: dashpot (0, 3.6, 4.8).
 TEST(SpringLaw, ForceByHand) {
-  const Vec3 f = spring_pull(Vec3(0, 3, 4), Vec3(1, 2, 0), 10.0, 4.0, 5.0).force;
+  const Vec3 f = spring_force(Vec3(0, 3, 4), Vec3(1, 2, 0), 10.0, 4.0, 5.0).force;
   EXPECT_NEAR(f.x(), 0.0, 1e-15);
   EXPECT_NEAR(f.y(), 6.0 + 3.6, 1e-14);
   EXPECT_NEAR(f.z(), 8.0 + 4.8, 1e-14);
 }
 
 TEST(SpringLaw, EndsThatCoincideExertNoForce) {
-  EXPECT_EQ(spring_pull(Vec3::Zero(), Vec3(1, 0, 0), 10.0, 1.0, 5.0).force, Vec3::Zero());
+  EXPECT_EQ(spring_force(Vec3::Zero(), Vec3(1, 0, 0), 10.0, 1.0, 5.0).force, Vec3::Zero());
 }
 
 TEST(SpringLaw, ForceIsTheNegativeGradientOfTheEnergy) {
   const Vec3 x(0.3, -0.7, 0.2);
   const double k = 123.0, l0 = 0.6, h = 1e-6;
   // The energy falls when x_i moves along the force on i; x_ij = x_j - x_i, so dE/dx_ij = +f.
-  const Vec3 f = spring_pull(x, Vec3::Zero(), k, l0, 0.0).force;
+  const Vec3 f = spring_force(x, Vec3::Zero(), k, l0, 0.0).force;
   for (int c = 0; c < 3; ++c) {
     Vec3 e = Vec3::Zero();
     e[c] = h;
@@ -37,8 +37,8 @@ TEST(SpringLaw, StiffnessIsTheGradientOfTheForce) {
   const double k = 123.0, l0 = 0.6, h = 1e-6;
   for (const Vec3& x : {Vec3(0.3, -0.7, 0.2), Vec3(0.1, 0.2, -0.1)}) {  // stretched, compressed
     const Vec3 u(0.4, 0.1, -0.8);
-    const Vec3 change = (spring_pull(x + h * u, Vec3::Zero(), k, l0, 0.0).force -
-                         spring_pull(x - h * u, Vec3::Zero(), k, l0, 0.0).force) /
+    const Vec3 change = (spring_force(x + h * u, Vec3::Zero(), k, l0, 0.0).force -
+                         spring_force(x - h * u, Vec3::Zero(), k, l0, 0.0).force) /
                         (2 * h);
     EXPECT_LT((spring_stiffness_times(x, k, l0, u) - change).norm(), 1e-7 * k);
   }
@@ -55,7 +55,7 @@ TEST(SpringLaw, OnlyStiffeningIsPositiveAndLeavesStretchedSpringsAlone) {
 
 TEST(SpringLaw, DashpotPowerAndProduct) {
   const Vec3 x(0, 0, 2), v(1, 0, 3);
-  EXPECT_DOUBLE_EQ(spring_pull(x, v, 0.0, 1.0, 2.0).heat, 2.0 * 9.0);
+  EXPECT_DOUBLE_EQ(spring_force(x, v, 0.0, 1.0, 2.0).heat, 2.0 * 9.0);
   EXPECT_DOUBLE_EQ(v.dot(dashpot_times(x, 2.0, v)), 2.0 * 9.0);
 }
 

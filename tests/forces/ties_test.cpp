@@ -29,9 +29,9 @@ Model tied() {
   return m;
 }
 
-std::vector<Vec3> displaced(const Model& m, double way) {
+std::vector<Vec3> displaced(const Model& m, double size) {
   std::vector<Vec3> x = m.rest_position;
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += way * random_point(i);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += size * random_point(i);
   return x;
 }
 

@@ -82,9 +82,9 @@ TEST(Viscosity, OfTetsIsThatOfTheFormula) {
     const Mat3 F = edges_of(x, m.tets[t]) * B;
     const Mat3 rate = F.transpose() * edges_of(v, m.tets[t]) * B;
     const Mat3 stress = F * 20.0 * (rate + rate.transpose());
-    const Mat3 pull = -m.rest_volume[t] * stress * B.transpose();
-    expected[uz(m.tets[t][0])] -= pull.rowwise().sum();
-    for (int a = 0; a < 3; ++a) expected[uz(m.tets[t][uz(a + 1)])] += pull.col(a);
+    const Mat3 forces = -m.rest_volume[t] * stress * B.transpose();
+    expected[uz(m.tets[t][0])] -= forces.rowwise().sum();
+    for (int a = 0; a < 3; ++a) expected[uz(m.tets[t][uz(a + 1)])] += forces.col(a);
   }
   const Field f = pulls(m, x, v);
   for (std::size_t i = 0; i < x.size(); ++i) {

@@ -30,7 +30,7 @@ TEST(VolumeLimit, BringsEveryCellWithinItsLimitAndKeepsMomentum) {
     for (std::size_t i = 0; i < x.size(); ++i) before += m.mass[i] * x[i];
     const VolumeLimitReport report = VolumeLimit().enforce(m, x);
     for (std::size_t i = 0; i < x.size(); ++i) after += m.mass[i] * x[i];
-    EXPECT_TRUE(report.met);
+    EXPECT_TRUE(report.within);
     EXPECT_LE(report.change, 5e-4);
     EXPECT_LE(largest_cell_change(m, x), 5.1e-4);
     EXPECT_LE((after - before).norm(), 1e-14);
@@ -46,7 +46,7 @@ TEST(VolumeLimit, LeavesWhatHoldsAlone) {
   x[0] += Vec3::Constant(1e-7);
   const std::vector<Vec3> start(x);
   const VolumeLimitReport report = VolumeLimit().enforce(m, x);
-  EXPECT_TRUE(report.met);
+  EXPECT_TRUE(report.within);
   EXPECT_EQ(report.projections, 0);
   EXPECT_EQ(x, start);
 }
@@ -61,7 +61,7 @@ TEST(VolumeLimit, SaysSoWhenPinsLeaveNoRoom) {
   finish(m);
   std::vector<Vec3> x(m.rest_position);
   for (Vec3& p : x) p *= 1.1;
-  EXPECT_FALSE(VolumeLimit().enforce(m, x).met);
+  EXPECT_FALSE(VolumeLimit().enforce(m, x).within);
 }
 
 }  // namespace

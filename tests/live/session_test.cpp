@@ -66,8 +66,8 @@ TEST(Live, AStepIsOneStepAndPauses) {
 TEST(Live, ADeadlineOrAHurryInTheMiddleOfAFrameIsKept) {
   Session s(test::hanging_box());
   EXPECT_FALSE(s.advance(Clock::now() - std::chrono::seconds(1)));
-  const std::atomic<bool> hurry{true};
-  EXPECT_FALSE(s.advance(never, &hurry));
+  const std::atomic<bool> interrupted{true};
+  EXPECT_FALSE(s.advance(never, &interrupted));
   EXPECT_EQ(s.state().step, 2);
 }
 

@@ -92,7 +92,7 @@ TEST(Shapes, TheNormalIsTheGradientOfTheDistance) {
 TEST(Shapes, EntriesAreThePlacesWhereASampledWayGoesIn) {
   std::uint64_t seed = 4000000;
   for (const Named& shape : shapes_of_all_kinds()) {
-    int met = 0;
+    int hits = 0;
     for (int i = 0; i < 3000; ++i) {
       const Vec3 a = somewhere(seed);
       const Vec3 b = somewhere(seed);
@@ -108,14 +108,14 @@ TEST(Shapes, EntriesAreThePlacesWhereASampledWayGoesIn) {
         EXPECT_GT(lowest, -1e-14) << shape.name;
         continue;
       }
-      ++met;
+      ++hits;
       EXPECT_GE(*s, 0.0);
       EXPECT_LE(*s, 1.0);
       EXPECT_NEAR(shape.surface(a + *s * (b - a)).distance, 0.0, 1e-12) << shape.name;
       for (int k = 0; k < 50; ++k)
         EXPECT_GT(shape.surface(a + k / 50.0 * *s * (b - a)).distance, -1e-14) << shape.name;
     }
-    EXPECT_GT(met, 100) << shape.name;
+    EXPECT_GT(hits, 100) << shape.name;
   }
 }
 

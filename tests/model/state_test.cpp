@@ -49,13 +49,13 @@ TEST(State, TheHashSeesEveryBitOfTheMotion) {
   EXPECT_NE(other.hash(), state.hash());
 }
 
-TEST(ContactPush, CountsTheNodesThatItUses) {
-  ContactPush push;
-  EXPECT_EQ(push.count(), 0U);
-  push.node = {3, 5, -1, -1};
-  EXPECT_EQ(push.count(), 2U);
-  push.node = {3, 5, 8, 1};
-  EXPECT_EQ(push.count(), 4U);
+TEST(ContactForce, CountsTheNodesThatItUses) {
+  ContactForce force;
+  EXPECT_EQ(force.count(), 0U);
+  force.node = {3, 5, -1, -1};
+  EXPECT_EQ(force.count(), 2U);
+  force.node = {3, 5, 8, 1};
+  EXPECT_EQ(force.count(), 4U);
 }
 
 }  // namespace

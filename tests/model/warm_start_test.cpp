@@ -5,12 +5,12 @@
 namespace sinew {
 namespace {
 
-ContactPush push_on(Index node, const Vec3& push, double weight = 1.0) {
-  ContactPush p;
+ContactForce force_on(Index node, const Vec3& force, double weight = 1.0) {
+  ContactForce p;
   p.id = {ContactKind::node_shape, 0, node, -1};
   p.node[0] = node;
   p.weight[0] = weight;
-  p.push = push;
+  p.force = force;
   return p;
 }
 
@@ -26,34 +26,34 @@ struct WarmStart : testing::Test {
 };
 
 TEST_F(WarmStart, NothingHoldsBeforeTheFirstStep) {
-  state.reactions.contacts = {push_on(0, Vec3(0, 1, 0))};
+  state.reactions.contacts = {force_on(0, Vec3(0, 1, 0))};
   EXPECT_TRUE(holds({Vec3(0, -1, 0)}).empty());
 }
 
-TEST_F(WarmStart, PushesOfOneNodeAddUpWithTheirWeights) {
+TEST_F(WarmStart, ForcesOfOneNodeAddUpWithTheirWeights) {
   state.last_step = 1e-3;
-  state.reactions.contacts = {push_on(1, Vec3(0, 4, 0)), push_on(1, Vec3(2, 0, 0), 0.5)};
+  state.reactions.contacts = {force_on(1, Vec3(0, 4, 0)), force_on(1, Vec3(2, 0, 0), 0.5)};
   const auto h = holds({Vec3::Zero(), Vec3(0, -10, 0)});
   ASSERT_EQ(h.size(), 1U);
   EXPECT_EQ(h[0].node, 1);
-  EXPECT_EQ(h[0].push, Vec3(1, 4, 0));
+  EXPECT_EQ(h[0].force, Vec3(1, 4, 0));
   EXPECT_EQ(h[0].share, 1.0);
 }
 
-TEST_F(WarmStart, APushCountsUpToTheSizeOfTheForce) {
+TEST_F(WarmStart, AForceCountsUpToTheSizeOfTheForce) {
   state.last_step = 1e-3;
-  state.reactions.contacts = {push_on(0, Vec3(0, 400, 0))};
+  state.reactions.contacts = {force_on(0, Vec3(0, 400, 0))};
   const auto h = holds({Vec3(0, -3, 4)});
   ASSERT_EQ(h.size(), 1U);
-  EXPECT_NEAR(h[0].share * h[0].push.norm(), 5.0, 1e-12);
+  EXPECT_NEAR(h[0].share * h[0].force.norm(), 5.0, 1e-12);
 }
 
-TEST_F(WarmStart, PushesThatCancelHoldNothing) {
+TEST_F(WarmStart, ForcesThatCancelHoldNothing) {
   state.last_step = 1e-3;
-  state.reactions.contacts = {push_on(0, Vec3(0, 1, 0)), push_on(0, Vec3(0, -1, 0)),
-                              push_on(0, Vec3(0, 2, 0))};
+  state.reactions.contacts = {force_on(0, Vec3(0, 1, 0)), force_on(0, Vec3(0, -1, 0)),
+                              force_on(0, Vec3(0, 2, 0))};
   double sum_y = 0.0;
-  for (const NodeHold& h : holds({Vec3(0, -9, 0)})) sum_y += h.share * h.push.y();
+  for (const NodeHold& h : holds({Vec3(0, -9, 0)})) sum_y += h.share * h.force.y();
   EXPECT_EQ(sum_y, 2.0);
 }
 

@@ -11,7 +11,7 @@ TEST(ForceCurve, HasAPointForEveryRow) {
       "[N]\n0,1,0,0\n0.5,1,0.001,2.5\n1,1,0.002,7\n",
       "ball");
   EXPECT_EQ(svg.compare(0, 4, "<svg"), 0);
-  for (const char* text : {"travel [mm]", "force [N]", "Force on ball against its way"})
+  for (const char* text : {"travel [mm]", "force [N]", "Force on ball against its travel"})
     EXPECT_NE(svg.find(text), std::string::npos) << text;
 }
 

@@ -40,8 +40,9 @@ TEST(Precision, SingleFollowsDouble) {
     const Summary two = run_block({law, "precision=double"});
     EXPECT_EQ(one.precision, Precision::single);
     EXPECT_EQ(two.precision, Precision::double_);
-    const Vec3 way = two.probes[0].displacement;
-    EXPECT_LT((one.probes[0].displacement - way).norm(), 1e-3 * way.norm()) << law;
+    const Vec3 displacement = two.probes[0].displacement;
+    EXPECT_LT((one.probes[0].displacement - displacement).norm(), 1e-3 * displacement.norm())
+        << law;
     EXPECT_NEAR(one.energy.total(), two.energy.total(), 1e-4 * two.energy.work_in) << law;
   }
 }

@@ -22,8 +22,8 @@ namespace {
 constexpr double g = 9.81;
 
 // A run that is looked at frame by frame.
-struct Trial {
-  explicit Trial(const Scene& s)
+struct ContactRun {
+  explicit ContactRun(const Scene& s)
       : scene(s),
         model(build_model(scene)),
         controls(initial_controls(model)),
@@ -85,14 +85,14 @@ TEST(Contact, TenCubesStandOnEachOther) {
 #else
   const std::string duration = "duration=0.5";
 #endif
-  Trial r(load_scene(test::source_path("scenes/stack.toml"), {duration}));
+  ContactRun r(load_scene(test::source_path("scenes/stack.toml"), {duration}));
   std::vector<Vec3> before;
   for (std::size_t b = 0; b < 10; ++b) before.push_back(r.center(b));
   r.to_the_end();
   for (std::size_t b = 0; b < 10; ++b) {
-    const Vec3 way = r.center(b) - before[b];
-    EXPECT_LT(std::hypot(way.x(), way.z()), 5e-5) << b;
-    EXPECT_LT(std::abs(way.y()), 5e-4) << b;
+    const Vec3 displacement = r.center(b) - before[b];
+    EXPECT_LT(std::hypot(displacement.x(), displacement.z()), 5e-5) << b;
+    EXPECT_LT(std::abs(displacement.y()), 5e-4) << b;
   }
   EXPECT_GT(r.run.contacts, 9 * 16);
   EXPECT_LT(r.run.deepest, 0.01 * 0.02 / 3.0);  // 1 % of an edge
@@ -102,11 +102,11 @@ TEST(Contact, TenCubesStandOnEachOther) {
 // Free flight: what one body loses the other gets, and nothing comes from nowhere.
 TEST(Contact, BodiesThatCollideKeepTheirMomentum) {
   for (const std::string stepper : {"verlet", "implicit"}) {
-    Trial r(contact_scene("duration = 0.05\ngravity = [0, 0, 0]\nstepper = \"" + stepper +
-                          "\"\n[contact]\n" + cube("a", "velocity = [1, 0, 0]") +
-                          cube("b",
-                               "position = [0.025, 0.004, 0.003]\nvelocity = [-2, 0, 0]\n"
-                               "spin = [0, 20, 10]")));
+    ContactRun r(contact_scene("duration = 0.05\ngravity = [0, 0, 0]\nstepper = \"" + stepper +
+                               "\"\n[contact]\n" + cube("a", "velocity = [1, 0, 0]") +
+                               cube("b",
+                                    "position = [0.025, 0.004, 0.003]\nvelocity = [-2, 0, 0]\n"
+                                    "spin = [0, 20, 10]")));
     const Vec3 before = r.momentum();
     const double energy = r.energy();
     r.to_the_end();
@@ -126,11 +126,11 @@ TEST(Contact, BodiesThatCollideKeepTheirMomentum) {
 double way_down(double angle, double friction, const std::string& body) {
   const double s = std::sin(angle);
   const double c = std::cos(angle);
-  Trial r(contact_scene("duration = 0.4\n[ground]\nnormal = [" + std::to_string(s) + ", " +
-                        std::to_string(c) + ", 0]\nfriction = " + std::to_string(friction) + "\n" +
-                        body + "position = [" + std::to_string(s * 0.03) + ", " +
-                        std::to_string(c * 0.03) +
-                        ", 0]\nyoung = 3e5\npoisson = 0.45\ndamping_ratio = 0.02\n"));
+  ContactRun r(contact_scene("duration = 0.4\n[ground]\nnormal = [" + std::to_string(s) + ", " +
+                             std::to_string(c) + ", 0]\nfriction = " + std::to_string(friction) +
+                             "\n" + body + "position = [" + std::to_string(s * 0.03) + ", " +
+                             std::to_string(c * 0.03) +
+                             ", 0]\nyoung = 3e5\npoisson = 0.45\ndamping_ratio = 0.02\n"));
   const Vec3 before = r.center(0);
   r.to_the_end();
   return (r.center(0) - before).norm();
@@ -150,7 +150,7 @@ TEST(Contact, BallsRollAndSlideAsCoulombSays) {
 }
 
 TEST(Contact, AFastBallDoesNotTunnelThroughAMembrane) {
-  Trial r(contact_scene(R"(duration = 0.004
+  ContactRun r(contact_scene(R"(duration = 0.004
 gravity = [0, 0, 0]
 [output]
 fps = 1000
@@ -184,11 +184,12 @@ poisson = 0.4
 TEST(Contact, ImplicitAndExplicitStepsComeToTheSameRest) {
   std::vector<double> height;
   for (const std::string stepper : {"verlet", "implicit"}) {
-    Trial r(contact_scene("duration = 0.6\nstepper = \"" + stepper + "\"\n[ground]\n[contact]\n" +
-                          cube("a", "position = [0, 0.01, 0]\ndamping_ratio = 0.5") +
-                          cube("b",
-                               "position = [0, 0.03, 0]\nrotation = [0, 20, 0]\n"
-                               "damping_ratio = 0.5")));
+    ContactRun r(contact_scene("duration = 0.6\nstepper = \"" + stepper +
+                               "\"\n[ground]\n[contact]\n" +
+                               cube("a", "position = [0, 0.01, 0]\ndamping_ratio = 0.5") +
+                               cube("b",
+                                    "position = [0, 0.03, 0]\nrotation = [0, 20, 0]\n"
+                                    "damping_ratio = 0.5")));
     r.to_the_end();
     height.push_back(r.center(1).y());
     EXPECT_LT(r.velocity(1).norm(), 1e-3) << stepper;
@@ -204,17 +205,17 @@ TEST(Contact, ARunThatIsCutGoesOnToTheSameBits) {
       cube("b", "position = [0.003, 0.0302, 0]\nrotation = [0, 20, 0]") +
       "[obstacle.wall]\nshape = \"box\"\ncenter = [0.023, 0.03, 0]\n"
       "size = [0.02, 0.03, 0.04]\n");
-  Trial whole(scene);
+  ContactRun whole(scene);
   std::vector<std::uint64_t> hashes;
   for (const int threads : {1, 2}) {
     const ThreadLimit limit(threads);
-    Trial cut(scene);
+    ContactRun cut(scene);
     while (cut.run.frame < 2) cut.stepping.advance_frame(cut.controls, cut.run, nullptr);
     EXPECT_GT(cut.run.state.reactions.contacts.size(), 10U);
     const auto file = std::filesystem::temp_directory_path() /
                       ("sinew-contact-" + std::to_string(::getpid()) + ".bin");
     write_checkpoint(file, cut.model.hash(), cut.run);
-    Trial rest(scene);
+    ContactRun rest(scene);
     rest.run = read_checkpoint(file, rest.model);
     std::filesystem::remove(file);
     rest.to_the_end();
@@ -227,9 +228,9 @@ TEST(Contact, ARunThatIsCutGoesOnToTheSameBits) {
 
 // What rests has no kinetic energy: the velocity of a whole step knows the contacts' forces.
 TEST(Contact, WhatLiesStillHasNoKineticEnergy) {
-  Trial r(contact_scene("duration = 1\n[ground]\n[contact]\n" +
-                        cube("a", "position = [0, 0.01, 0]\ndamping_ratio = 0.5") +
-                        cube("b", "position = [0, 0.03, 0]\ndamping_ratio = 0.5")));
+  ContactRun r(contact_scene("duration = 1\n[ground]\n[contact]\n" +
+                             cube("a", "position = [0, 0.01, 0]\ndamping_ratio = 0.5") +
+                             cube("b", "position = [0, 0.03, 0]\ndamping_ratio = 0.5")));
   r.to_the_end();
   const Energies e =
       measure_energies(r.model, initial_controls(r.model), r.run.state,
@@ -248,8 +249,8 @@ TEST(Contact, TheGroundAndAPlaneObstacleGiveTheSameBitsWithEveryStepper) {
         "\"\n[body.box]\nshape = \"box\"\nsize = [0.1, 0.1, 0.1]\ncells = [3, 3, 3]\n"
         "position = [0, 0.06, 0]\nvelocity = [0.2, 0, 0]\nyoung = 20e3\n";
     const std::string plane = stepper == "static" ? flat : slope;
-    Trial ground(parse_scene(body + "[ground]\n" + plane, "ground.toml", "."));
-    Trial obstacle(
+    ContactRun ground(parse_scene(body + "[ground]\n" + plane, "ground.toml", "."));
+    ContactRun obstacle(
         parse_scene(body + "[obstacle.floor]\nshape = \"plane\"\ncenter = [0, 0, 0]\n" + plane,
                     "plane.toml", "."));
     ground.to_the_end();
@@ -275,13 +276,13 @@ TEST(Contact, ImplicitStepsDoNotPassThroughThinObstacles) {
   for (const std::string scheme : {"sdirk2", "backward-euler"}) {
     for (const std::string& plate : plates) {
       for (const double height : {0.2, 0.205, 0.21, 0.215, 0.22}) {
-        Trial r(parse_scene("duration = 0.5\nstepper = \"implicit\"\nscheme = \"" + scheme +
-                                "\"\ndt = 0.0166\n[body.box]\nshape = \"box\"\n"
-                                "size = [0.1, 0.1, 0.1]\ncells = [2, 2, 2]\nyoung = 20e3\n"
-                                "position = [0, " +
-                                std::to_string(height) + ", 0]\n[obstacle.plate]\n" +
-                                "center = [0, 0, 0]\n" + plate,
-                            "plate.toml", "."));
+        ContactRun r(parse_scene("duration = 0.5\nstepper = \"implicit\"\nscheme = \"" + scheme +
+                                     "\"\ndt = 0.0166\n[body.box]\nshape = \"box\"\n"
+                                     "size = [0.1, 0.1, 0.1]\ncells = [2, 2, 2]\nyoung = 20e3\n"
+                                     "position = [0, " +
+                                     std::to_string(height) + ", 0]\n[obstacle.plate]\n" +
+                                     "center = [0, 0, 0]\n" + plate,
+                                 "plate.toml", "."));
         r.to_the_end();
         EXPECT_GT(r.center(0).y(), 0.03) << scheme << " " << plate << height;
       }

@@ -30,17 +30,17 @@ select = { nearest = [0, 0, 0] }
     for (const Index n : pin.nodes) state.half_velocity[uz(n)] = model.start_velocity[uz(n)];
   }
   const std::vector<Vec3> before = state.half_velocity;
-  calm_softened_bodies(model, softer, state);
+  damp_softened_bodies(model, softer, state);
   for (std::size_t i = 0; i < before.size(); ++i) {
     EXPECT_LT((state.half_velocity[i] - before[i]).norm(), 1e-9);
   }
   state.half_velocity[3] += Vec3(1, 0, 0);
   const Vec3 fast = state.half_velocity[3];
-  calm_softened_bodies(model, softer, state);
+  damp_softened_bodies(model, softer, state);
   EXPECT_GT((state.half_velocity[3] - fast).norm(), 0.5);
-  const std::vector<Vec3> calm = state.half_velocity;
-  calm_softened_bodies(softer, model, state);  // stiffer: nothing
-  EXPECT_EQ(state.half_velocity, calm);
+  const std::vector<Vec3> unchanged = state.half_velocity;
+  damp_softened_bodies(softer, model, state);  // stiffer: nothing
+  EXPECT_EQ(state.half_velocity, unchanged);
 }
 
 // Obstacles that are meshes have nodes of their own, the last ones.

@@ -88,7 +88,7 @@ TEST(World, AToolPressesAndItsWorkIsInTheAccount) {
   };
   for (int i = 0; i < 20; ++i) {
     const double x = 0.09 - 0.0015 * i;
-    w.lead(tool, Vec3(x, -0.03, 0), 1.0 / 30.0);
+    w.move(tool, Vec3(x, -0.03, 0), 1.0 / 30.0);
     EXPECT_TRUE(w.advance_frame(nullptr));
     EXPECT_NEAR(now().center.x(), x, 1e-12);
   }
@@ -130,7 +130,7 @@ stiffness = "soft"
   w.move(w.obstacle("table"), Pose{Vec3(0, -0.09, 0), Mat3::Identity()});
   w.place(w.obstacle("ball"), Pose{Vec3(0, -0.3, 0), Mat3::Identity()});
   const ToolHandle tool = w.add_tool(Vec3(0.2, 0, 0), 0.03, 1e6);
-  w.lead(tool, Vec3(0.1, 0, 0), 1.0);
+  w.move(tool, Vec3(0.1, 0, 0), 1.0);
   w.step();
   EXPECT_LT((place_of(0) - Vec3(0, -0.09, 0)).norm(), 1e-12);
   EXPECT_LT((place_of(1) - Vec3(0, -0.3, 0)).norm(), 1e-12);
@@ -138,7 +138,7 @@ stiffness = "soft"
   const std::string saved = w.save();
   const double x = soft_sphere(w.controls().tools[0], 0.5).center.x();
   w.place(w.obstacle("table"), Pose{Vec3(0, -1, 0), Mat3::Identity()});
-  w.lead(tool, Vec3(0.9, 0, 0), 1.0);
+  w.move(tool, Vec3(0.9, 0, 0), 1.0);
   w.restore(saved);
   EXPECT_LT((place_of(0) - Vec3(0, -0.09, 0)).norm(), 1e-12);
   EXPECT_EQ(soft_sphere(w.controls().tools[0], 0.5).center.x(), x);
@@ -151,8 +151,8 @@ TEST(World, GrabsAndToolsStayWhenValuesChange) {
   w.advance_frame(nullptr);
   const Vec3 hand = w.state().position[0] + Vec3(0.01, 0, 0);
   const GrabHandle grab = w.grab(0, 0.03, hand);
-  EXPECT_LT(w.pull(grab).norm(), 1e-12);
-  EXPECT_LT((w.held_at(grab) - hand).norm(), 1e-12);
+  EXPECT_LT(w.force(grab).norm(), 1e-12);
+  EXPECT_LT((w.unloaded_target(grab) - hand).norm(), 1e-12);
   const ToolHandle tool = w.add_tool(Vec3(0.3, 0, 0), 0.03, 1e6);
   w.set_gravity(Vec3(0, 0, 1));
   const std::vector<Vec3> before = w.state().position;
@@ -190,16 +190,16 @@ TEST(World, AnotherOneGoesOnWithTheSameBits) {
   Simulation second = simulate(a.current_scene());
   World& b = internals(second);
   a.choose_steps();
-  b.go_on_from(a);
+  b.continue_from(a);
   for (int i = 0; i < 3; ++i) {
     for (World* w : {&a, &b}) {
       w->move(w->counterpart(grab), Vec3(0.01 * i, -0.06, 0));
-      w->lead(w->counterpart(tool), Vec3(0.07 - 0.002 * i, -0.03, 0), 0.03);
+      w->move(w->counterpart(tool), Vec3(0.07 - 0.002 * i, -0.03, 0), 0.03);
       w->advance_frame(nullptr);
     }
     EXPECT_EQ(a.state().hash(), b.state().hash());
   }
-  EXPECT_GT(a.pull(grab).norm(), 0.0);
+  EXPECT_GT(a.force(grab).norm(), 0.0);
 }
 
 TEST(World, ARunThatDivergesIsPutBackToWhatWasKept) {

@@ -8,16 +8,16 @@ namespace sinew {
 namespace {
 
 TEST(Bound, PullsWhatIsOutsideAndNothingElse) {
-  EXPECT_EQ(bound_pull(0.5, 0.0, 1.0, 10.0, 0.0), 0.0);
-  EXPECT_DOUBLE_EQ(bound_pull(1.2, 0.0, 1.0, 10.0, 0.0), 2.0);
-  EXPECT_DOUBLE_EQ(bound_pull(-0.1, 0.0, 1.0, 10.0, 0.0), -1.0);
-  // At the bound the pull is the multiplier, whatever the stiffness.
+  EXPECT_EQ(bound_force(0.5, 0.0, 1.0, 10.0, 0.0), 0.0);
+  EXPECT_DOUBLE_EQ(bound_force(1.2, 0.0, 1.0, 10.0, 0.0), 2.0);
+  EXPECT_DOUBLE_EQ(bound_force(-0.1, 0.0, 1.0, 10.0, 0.0), -1.0);
+  // At the bound the force is the multiplier, whatever the stiffness.
   for (const double k : {1.0, 1e3, 1e6}) {
-    EXPECT_NEAR(bound_pull(1.0, 0.0, 1.0, k, 3.0), 3.0, 1e-9);
-    EXPECT_NEAR(bound_pull(0.0, 0.0, 1.0, k, -3.0), -3.0, 1e-9);
+    EXPECT_NEAR(bound_force(1.0, 0.0, 1.0, k, 3.0), 3.0, 1e-9);
+    EXPECT_NEAR(bound_force(0.0, 0.0, 1.0, k, -3.0), -3.0, 1e-9);
   }
   // A multiplier that pulls back within the interval is given up.
-  EXPECT_EQ(bound_pull(0.5, 0.0, 1.0, 10.0, 3.0), 0.0);
+  EXPECT_EQ(bound_force(0.5, 0.0, 1.0, 10.0, 3.0), 0.0);
 }
 
 TEST(Bound, PullAndStiffnessAreTheDerivativesOfTheEnergy) {
@@ -25,9 +25,10 @@ TEST(Bound, PullAndStiffnessAreTheDerivativesOfTheEnergy) {
   for (const double p : {-2.0, 0.0, 1.5}) {
     for (const double q : {-0.7, -0.05, 0.3, 0.6, 1.1, 1.9}) {
       const auto energy = [&](double at) { return bound_energy(at, 0.0, 1.0, k, p); };
-      const auto pull = [&](double at) { return bound_pull(at, 0.0, 1.0, k, p); };
-      EXPECT_NEAR((energy(q + e) - energy(q - e)) / (2.0 * e), pull(q), 1e-7) << q << " " << p;
-      EXPECT_NEAR((pull(q + e) - pull(q - e)) / (2.0 * e), bound_stiffness(q, 0.0, 1.0, k, p), 1e-6)
+      const auto force = [&](double at) { return bound_force(at, 0.0, 1.0, k, p); };
+      EXPECT_NEAR((energy(q + e) - energy(q - e)) / (2.0 * e), force(q), 1e-7) << q << " " << p;
+      EXPECT_NEAR((force(q + e) - force(q - e)) / (2.0 * e), bound_stiffness(q, 0.0, 1.0, k, p),
+                  1e-6)
           << q << " " << p;
     }
   }
@@ -35,8 +36,8 @@ TEST(Bound, PullAndStiffnessAreTheDerivativesOfTheEnergy) {
 
 TEST(Friction, SticksUpToItsLimitAndThenSlides) {
   const Vec3 u(0.01, 0.0, 0.0);
-  EXPECT_LT((friction_pull(u, 5.0, 100.0, Vec3::Zero()) - 100.0 * u).norm(), 1e-15);
-  EXPECT_LT((friction_pull(100.0 * u, 5.0, 100.0, Vec3::Zero()) - Vec3(5.0, 0.0, 0.0)).norm(),
+  EXPECT_LT((friction_force(u, 5.0, 100.0, Vec3::Zero()) - 100.0 * u).norm(), 1e-15);
+  EXPECT_LT((friction_force(100.0 * u, 5.0, 100.0, Vec3::Zero()) - Vec3(5.0, 0.0, 0.0)).norm(),
             1e-12);
 }
 
@@ -47,14 +48,16 @@ TEST(Friction, PullAndStiffnessAreTheDerivativesOfTheEnergy) {
   for (std::size_t i = 0; i < 20; ++i) {
     const Vec3 u = plane * (random_point(i) - Vec3::Constant(0.5));
     const Vec3 p = plane * (random_point(100 + i) - Vec3::Constant(0.5));
-    const Vec3 way = plane * (random_point(200 + i) - Vec3::Constant(0.5));
+    const Vec3 direction = plane * (random_point(200 + i) - Vec3::Constant(0.5));
     const double r = i % 2 == 0 ? 2.0 : 200.0;  // slides, sticks
-    const double slope =
-        (friction_energy(u + e * way, r, k, p) - friction_energy(u - e * way, r, k, p)) / (2.0 * e);
-    EXPECT_NEAR(slope, friction_pull(u, r, k, p).dot(way), 1e-6);
+    const double slope = (friction_energy(u + e * direction, r, k, p) -
+                          friction_energy(u - e * direction, r, k, p)) /
+                         (2.0 * e);
+    EXPECT_NEAR(slope, friction_force(u, r, k, p).dot(direction), 1e-6);
     const Vec3 change =
-        (friction_pull(u + e * way, r, k, p) - friction_pull(u - e * way, r, k, p)) / (2.0 * e);
-    EXPECT_LT((change - friction_stiffness(u, r, k, p, n) * way).norm(), 1e-5);
+        (friction_force(u + e * direction, r, k, p) - friction_force(u - e * direction, r, k, p)) /
+        (2.0 * e);
+    EXPECT_LT((change - friction_stiffness(u, r, k, p, n) * direction).norm(), 1e-5);
   }
 }
 

@@ -73,9 +73,10 @@ TEST(Bound, PullIsTheDerivativeOfTheEnergy) {
     for (const double p : {-2.0, 0.0, 3.0}) {
       const double e = 1e-6, k = 7.0;
       const auto energy = [&](double x) { return bound_energy(x, 0.0, 1.0, k, p); };
-      const auto pull = [&](double x) { return bound_pull(x, 0.0, 1.0, k, p); };
-      EXPECT_NEAR(pull(q), (energy(q + e) - energy(q - e)) / (2 * e), 1e-7);
-      EXPECT_NEAR(bound_stiffness(q, 0.0, 1.0, k, p), (pull(q + e) - pull(q - e)) / (2 * e), 1e-7);
+      const auto force = [&](double x) { return bound_force(x, 0.0, 1.0, k, p); };
+      EXPECT_NEAR(force(q), (energy(q + e) - energy(q - e)) / (2 * e), 1e-7);
+      EXPECT_NEAR(bound_stiffness(q, 0.0, 1.0, k, p), (force(q + e) - force(q - e)) / (2 * e),
+                  1e-7);
     }
   }
 }
@@ -86,7 +87,7 @@ TEST(Bound, FrictionIsTheDerivativeOfItsEnergyAndAtMostItsShareOfThePush) {
   const double k = 50.0, r = 0.7, e = 1e-6;
   const Vec3 p = 0.2 * a - 0.3 * b;
   for (const Vec3& u : {Vec3(0.001 * a), Vec3(0.1 * a - 0.04 * b), Vec3(-0.5 * b)}) {
-    const Vec3 s = friction_pull(u, r, k, p);
+    const Vec3 s = friction_force(u, r, k, p);
     EXPECT_LE(s.norm(), r * (1 + 1e-12));
     const Mat3 block = friction_stiffness(u, r, k, p, n);
     for (const Vec3& d : {a, b}) {
@@ -95,7 +96,7 @@ TEST(Bound, FrictionIsTheDerivativeOfItsEnergyAndAtMostItsShareOfThePush) {
           (friction_energy(u + e * d, r, k, p) - friction_energy(u - e * d, r, k, p)) / (2 * e),
           1e-7);
       const Vec3 change =
-          (friction_pull(u + e * d, r, k, p) - friction_pull(u - e * d, r, k, p)) / (2 * e);
+          (friction_force(u + e * d, r, k, p) - friction_force(u - e * d, r, k, p)) / (2 * e);
       EXPECT_LE((block * d - change).norm(), 1e-6);
     }
     EXPECT_LE((block * n).norm(), 1e-12);
@@ -212,13 +213,13 @@ TEST(Constraints, ADroppedBoxComesToRestOnTheGround) {
       before = mechanical;
     }
     EXPECT_NEAR(lowest(m, s), 0.0, 1e-4 * 0.05);
-    Vec3 push = Vec3::Zero();
+    Vec3 total = Vec3::Zero();
     double speed = 0.0;
-    for (const ContactPush& p : s.reactions.contacts) push += p.push;
+    for (const ContactForce& p : s.reactions.contacts) total += p.force;
     for (const Vec3& v : s.half_velocity) speed = std::max(speed, v.norm());
     EXPECT_LE(speed, 1e-3);
-    EXPECT_NEAR(push.y(), weight(m), 1e-3 * weight(m));
-    EXPECT_LE(std::hypot(push.x(), push.z()), 1e-3 * weight(m));
+    EXPECT_NEAR(total.y(), weight(m), 1e-3 * weight(m));
+    EXPECT_LE(std::hypot(total.x(), total.z()), 1e-3 * weight(m));
   }
 }
 
@@ -263,8 +264,8 @@ TEST(Constraints, ASlidingBoxStopsWhereFrictionHasTakenItsEnergy) {
   for (int i = 0; i < 60; ++i) stepper.step(frame, initial_controls(m), {}, s);
   // v^2 / (2 mu g), less what a step of backward Euler is ahead of it: mu g h t / 2.
   const double stop = speed / (0.5 * 9.81);
-  const double way = 0.5 * speed * stop - 0.5 * speed * frame;
-  EXPECT_NEAR(s.position[0].x() - m.rest_position[0].x(), way, 0.05 * way);
+  const double distance = 0.5 * speed * stop - 0.5 * speed * frame;
+  EXPECT_NEAR(s.position[0].x() - m.rest_position[0].x(), distance, 0.05 * distance);
   for (const Vec3& v : s.half_velocity) EXPECT_LE(v.norm(), 1e-4);
   EXPECT_NEAR(s.energy.dissipated, kinetic, 0.05 * kinetic);
 }
@@ -303,7 +304,7 @@ TEST(Constraints, StretchLimitsHoldUnderAHeavyLoadAtAnyStiffness) {
     EXPECT_TRUE(StaticSolver(m).solve(initial_controls(m), 1.0, {}, rest).limits_met) << young;
     EXPECT_LE(measure_limit_violation(m, rest.position), m.limit_tolerance);
     // Stiff bodies never come to their limits.
-    EXPECT_EQ(act(rest.reactions), young < 1e9);
+    EXPECT_EQ(any_active(rest.reactions), young < 1e9);
   }
 }
 
@@ -324,7 +325,7 @@ TEST(Constraints, VolumeLimitsHold) {
     State rest = initial_state(m);
     EXPECT_TRUE(StaticSolver(m).solve(initial_controls(m), 1.0, {}, rest).limits_met);
     EXPECT_LE(largest_cell_change(m, rest.position), 1e-3 + 1e-4);
-    EXPECT_TRUE(act(rest.reactions));
+    EXPECT_TRUE(any_active(rest.reactions));
   }
 }
 
@@ -335,14 +336,14 @@ TEST(Constraints, ABoxRestsOnTheGroundWhereItIsPutDown) {
   EXPECT_TRUE(report.limits_met);
   EXPECT_EQ(report.contacts, 9);
   EXPECT_NEAR(lowest(m, s), 0.0, 1e-4 * 0.05);
-  Vec3 push = Vec3::Zero(), drift = Vec3::Zero();
-  for (const ContactPush& p : s.reactions.contacts) push += p.push;
+  Vec3 total = Vec3::Zero(), shift = Vec3::Zero();
+  for (const ContactForce& p : s.reactions.contacts) total += p.force;
   for (std::size_t i = 0; i < s.position.size(); ++i) {
-    drift += m.mass[i] * (s.position[i] - m.rest_position[i]);
+    shift += m.mass[i] * (s.position[i] - m.rest_position[i]);
   }
-  drift /= weight(m) / 9.81;
-  EXPECT_LE((push - Vec3(0, weight(m), 0)).norm(), 1e-4 * weight(m));
-  EXPECT_LE(std::hypot(drift.x(), drift.z()), 1e-5);
+  shift /= weight(m) / 9.81;
+  EXPECT_LE((total - Vec3(0, weight(m), 0)).norm(), 1e-4 * weight(m));
+  EXPECT_LE(std::hypot(shift.x(), shift.z()), 1e-5);
 }
 
 TEST(Constraints, ARestStateOnASlopeIsRefused) {
@@ -353,15 +354,15 @@ TEST(Constraints, ARestStateOnASlopeIsRefused) {
 }
 
 TEST(Constraints, TangledBodiesAreLedBack) {
-  for (const bool held : {false, true}) {
+  for (const bool pinned : {false, true}) {
     for (const test::Tangle tangle : test::tangles) {
-      if (test::sanitized && (!held || tangle != test::Tangle::inverted)) continue;
+      if (test::sanitized && (!pinned || tangle != test::Tangle::inverted)) continue;
       Material material = soft(1e4);
       material.damping_ratio = 0.5;
       material.drag = 10.0;
       Model m = tissue_box(material, {3, 3, 3});
       m.start_gravity.setZero();
-      if (held) m.pins.push_back({"wall", test::nodes_at(m, 0, -0.05), {}});
+      if (pinned) m.pins.push_back({"wall", test::nodes_at(m, 0, -0.05), {}});
       finish(m);
       State s = initial_state(m);
       test::tangle_nodes(m, tangle, s.position);
@@ -372,11 +373,11 @@ TEST(Constraints, TangledBodiesAreLedBack) {
       EXPECT_GT(righted, 0);
       EXPECT_LT(righted, 20);
       const std::vector<Vec3> shape = rest_shape_at(m, m.bodies[0], s.position);
-      double off = 0.0;
+      double error = 0.0;
       for (std::size_t i = 0; i < shape.size(); ++i) {
-        off = std::max(off, (s.position[i] - shape[i]).norm());
+        error = std::max(error, (s.position[i] - shape[i]).norm());
       }
-      EXPECT_LE(off, 1e-3) << held << " " << static_cast<int>(tangle);
+      EXPECT_LE(error, 1e-3) << pinned << " " << static_cast<int>(tangle);
     }
   }
 }
@@ -400,7 +401,7 @@ TEST(Constraints, SameBitsAtAnyThreadCount) {
     const ThreadLimit limit(threads);
     State s = initial_state(m);
     ImplicitStepper(m).step(0.25 * frame, initial_controls(m), options, s);
-    EXPECT_TRUE(act(s.reactions));
+    EXPECT_TRUE(any_active(s.reactions));
     hashes.push_back(s.hash());
   }
   EXPECT_EQ(hashes[0], hashes[1]);
@@ -409,14 +410,14 @@ TEST(Constraints, SameBitsAtAnyThreadCount) {
 TEST(Constraints, TheStateIsAllThatAStepGoesOnFrom) {
   const Model m = limited_box(2);
   State through = initial_state(m);
-  State anew = through;
+  State restarted = through;
   ImplicitStepper stepper(m);
   for (int i = 0; i < 5; ++i) {
     stepper.step(frame, initial_controls(m), {}, through);
-    ImplicitStepper(m).step(frame, initial_controls(m), {}, anew);
+    ImplicitStepper(m).step(frame, initial_controls(m), {}, restarted);
   }
-  EXPECT_TRUE(act(through.reactions));
-  EXPECT_EQ(through.hash(), anew.hash());
+  EXPECT_TRUE(any_active(through.reactions));
+  EXPECT_EQ(through.hash(), restarted.hash());
 }
 
 }  // namespace

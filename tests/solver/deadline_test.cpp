@@ -48,8 +48,9 @@ TEST(Deadline, AStepCutShortLowersThePotential) {
     EXPECT_GT(report.residual, options.tolerance);
     Field change(s.half_velocity);
     add(change, -1.0, before.half_velocity);
-    const double standing = kinetic(m, before.half_velocity) + potential(m, before);
-    EXPECT_LE(kinetic(m, change) + potential(m, s), standing + 1e-12 * std::abs(standing)) << step;
+    const double start_value = kinetic(m, before.half_velocity) + potential(m, before);
+    EXPECT_LE(kinetic(m, change) + potential(m, s), start_value + 1e-12 * std::abs(start_value))
+        << step;
   }
 }
 

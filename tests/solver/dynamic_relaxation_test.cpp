@@ -23,13 +23,13 @@ TEST(DynamicRelaxation, EndsAtTheSameRestState) {
   const StepReport report = StaticSolver(m).solve(controls, 1.0, hurried, found);
   EXPECT_LE(report.residual, hurried.tolerance);
   EXPECT_EQ(report.load_steps, 2);  // both fail, and none comes after the fall
-  double way = 0.0, error = 0.0;
+  double displacement = 0.0, error = 0.0;
   for (std::size_t i = 0; i < found.position.size(); ++i) {
-    way = std::max(way, (expected.position[i] - m.rest_position[i]).norm());
+    displacement = std::max(displacement, (expected.position[i] - m.rest_position[i]).norm());
     error = std::max(error, (found.position[i] - expected.position[i]).norm());
   }
-  EXPECT_GT(way, 0.05);
-  EXPECT_LT(error, 1e-4 * way);
+  EXPECT_GT(displacement, 0.05);
+  EXPECT_LT(error, 1e-4 * displacement);
 }
 
 }  // namespace

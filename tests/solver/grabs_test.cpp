@@ -51,7 +51,7 @@ TEST(Grabs, VerletAndImplicitStepsCarryABodyToTheSameRest) {
   }
   // It moved, and is held back.
   EXPECT_GT((b.position[26] - m.rest_position[26]).norm(), 1e-3);
-  EXPECT_GT(grab_pull(m, controls.grabs[0], b.position).norm(), 0.1);
+  EXPECT_GT(grab_force(m, controls.grabs[0], b.position).norm(), 0.1);
 }
 
 }  // namespace

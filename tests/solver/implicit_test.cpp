@@ -71,9 +71,9 @@ TEST(Implicit, AFreeFallIsThatOfTheScheme) {
   const double h = 0.1;
   const State s = run(m, h, steps, Scheme::backward_euler);
   for (std::size_t i = 0; i < s.position.size(); ++i) {
-    const Vec3 way = s.position[i] - m.rest_position[i];
-    EXPECT_NEAR(way.y(), -9.81 * h * h * steps * (steps + 1) / 2, 1e-6);
-    EXPECT_NEAR(way.x(), 0.0, 1e-6);
+    const Vec3 displacement = s.position[i] - m.rest_position[i];
+    EXPECT_NEAR(displacement.y(), -9.81 * h * h * steps * (steps + 1) / 2, 1e-6);
+    EXPECT_NEAR(displacement.x(), 0.0, 1e-6);
     EXPECT_NEAR(s.half_velocity[i].y(), -9.81 * h * steps, 1e-5);
   }
 }
@@ -152,12 +152,12 @@ TEST(Implicit, ComesToTheRestStateAtAnyStiffness) {
       State rest = initial_state(m);
       StaticSolver(m).solve(initial_controls(m), 1.0, {}, rest);
       const State s = run(m, 1.0 / 60.0, 200, Scheme::backward_euler);
-      double sag = 0.0, off = 0.0;
+      double sag = 0.0, error = 0.0;
       for (std::size_t i = 0; i < s.position.size(); ++i) {
         sag = std::max(sag, (rest.position[i] - m.rest_position[i]).norm());
-        off = std::max(off, (s.position[i] - rest.position[i]).norm());
+        error = std::max(error, (s.position[i] - rest.position[i]).norm());
       }
-      EXPECT_LE(off, 0.01 * sag) << "E " << young << " nu " << poisson;
+      EXPECT_LE(error, 0.01 * sag) << "E " << young << " nu " << poisson;
     }
   }
 }
@@ -169,14 +169,14 @@ TEST(Implicit, EnergyAccountBalancesUpToTheScheme) {
   Model m = tissue_box(material, {2, 2, 2});
   m.pins.push_back({"top", test::nodes_at(m, 1, 0.05), {}});
   finish(m);
-  const auto drift = [&](int steps) {
+  const auto energy_loss = [&](int steps) {
     const State s = run(m, 0.2 / steps, steps, Scheme::sdirk2);
     const Energies e = test::energies_at(m, initial_controls(m), s);
     EXPECT_GT(e.dissipated, 0.0);
     return std::abs(e.total()) / e.dissipated;
   };
-  const double coarse = drift(50);
-  const double fine = drift(400);
+  const double coarse = energy_loss(50);
+  const double fine = energy_loss(400);
   EXPECT_LT(fine, 0.3 * coarse);
   EXPECT_LT(fine, 0.05);
 }
@@ -214,13 +214,13 @@ TEST(Implicit, LooseStepsMayTakeForcesInSinglePrecision) {
     };
     const State loose = fall(1e-3, false);
     const State single = fall(1e-3, true);
-    double way = 0.0;
-    double off = 0.0;
+    double displacement = 0.0;
+    double error = 0.0;
     for (std::size_t i = 0; i < m.rest_position.size(); ++i) {
-      way = std::max(way, (loose.position[i] - m.rest_position[i]).norm());
-      off = std::max(off, (loose.position[i] - single.position[i]).norm());
+      displacement = std::max(displacement, (loose.position[i] - m.rest_position[i]).norm());
+      error = std::max(error, (loose.position[i] - single.position[i]).norm());
     }
-    EXPECT_LT(off, 2e-3 * way) << young;
+    EXPECT_LT(error, 2e-3 * displacement) << young;
     EXPECT_EQ(fall(1e-6, true).position, fall(1e-6, false).position) << "too tight for it";
   }
 }

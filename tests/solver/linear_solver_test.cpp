@@ -46,20 +46,20 @@ double difference(const Model& m, double inertia, double rate) {
   State s = initial_state(m);
   const Field jitter = noise(m, 2e-3, 1);
   for (std::size_t i = 0; i < jitter.size(); ++i) s.position[i] += jitter[i];
-  const Field lag = m.rest_position;
+  const Field lagged = m.rest_position;
   Objective objective{.model = m,
                       .controls = initial_controls(m),
                       .inertia = inertia,
                       .rate = rate,
-                      .from = &lag,
-                      .lag = &lag};
+                      .from = &lagged,
+                      .lagged = &lagged};
   TangentMatrix matrix(m);
   matrix.assemble(objective, s.position, 0.0, compute_tet_state(m, s.position));
 
   const Field u = noise(m, 1.0, 2);
   Field plain(u.size()), damped(u.size());
   test::tangent_times({m, initial_controls(m), s.position}, 1.0, 0.0, u, Tangent::full, plain);
-  test::tangent_times({m, initial_controls(m), lag}, 0.0, 1.0, u, Tangent::full, damped);
+  test::tangent_times({m, initial_controls(m), lagged}, 0.0, 1.0, u, Tangent::full, damped);
   Field4 u4(u.size()), fast(u.size());
   for (std::size_t i = 0; i < u.size(); ++i) {
     plain[i] += rate * damped[i];
@@ -107,7 +107,7 @@ int iterations(Index k, double young, double poisson, double inertia) {
                       .controls = initial_controls(m),
                       .inertia = inertia,
                       .rate = 0.0,
-                      .lag = &m.rest_position};
+                      .lagged = &m.rest_position};
   linear.assemble(objective, s.position, 0.0, compute_tet_state(m, s.position));
   Field p;
   return linear.solve(outer_forces(m, initial_controls(m), s), 1e-3, 1000, {}, p);

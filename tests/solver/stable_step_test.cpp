@@ -58,11 +58,11 @@ bool stays_bounded(const Model& m, double h) {
       return false;
     }
   }
-  double off = 0.0;
+  double distance = 0.0;
   for (std::size_t i = 0; i < s.position.size(); ++i) {
-    off = std::max(off, (s.position[i] - m.rest_position[i]).norm());
+    distance = std::max(distance, (s.position[i] - m.rest_position[i]).norm());
   }
-  return off < 1e-6;
+  return distance < 1e-6;
 }
 
 TEST(StableStep, IsSharpOnTissueWithAndWithoutDamping) {
@@ -114,7 +114,7 @@ TEST(StableStep, StretchStiffensAndIsSeenAfterAFewLooks) {
   std::vector<Vec3> stretched = m.rest_position;
   for (Vec3& p : stretched) p *= 3.0;
   double h = rest.step;
-  for (int look = 0; look < 5; ++look)
+  for (int n = 0; n < 5; ++n)
     h = watch_stable_step(m, initial_controls(m), stretched, h, rest.mode, forces);
   EXPECT_LT(h, 0.95 * rest.step);
   EXPECT_NEAR(h, find_stable_step(m, initial_controls(m), stretched, forces).step, 0.02 * h);

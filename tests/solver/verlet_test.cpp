@@ -198,10 +198,10 @@ TEST(Verlet, EnergyStaysBoundedWithoutDampingOver100000Steps) {
   for (int i = 1; i <= steps; ++i) {
     stepper.step(h, initial_controls(m), s);
     if (i % 100 != 0) continue;
-    const double off =
+    const double error =
         std::abs(test::energies_at(m, initial_controls(m), s).total() - start) / start;
     double& worst = i <= steps / 10 ? worst_early : worst_late;
-    worst = std::max(worst, off);
+    worst = std::max(worst, error);
   }
   EXPECT_LT(worst_early, 0.2);
   EXPECT_LT(worst_late, 1.5 * worst_early);  // no drift
@@ -344,15 +344,15 @@ TEST(Verlet, ANonFiniteStateStopsAtThatStepAndNamesThePlace) {
 // The law itself leads a free body back from flat and inside out; inversion recovery does from
 // everywhere.
 TEST(Verlet, FindsBackFromTangledStarts) {
-  for (const bool held : {false, true}) {
+  for (const bool pinned : {false, true}) {
     for (const test::Tangle tangle : test::tangles) {
-      if (test::sanitized && (!held || tangle != test::Tangle::random)) continue;
+      if (test::sanitized && (!pinned || tangle != test::Tangle::random)) continue;
       Material material;
       material.young = 1e4;
       material.damping_ratio = 0.3;
       Model m = tissue_box(material, {3, 3, 3});
       m.start_gravity = Vec3::Zero();
-      if (held) m.pins.push_back({"floor", test::nodes_at(m, 1, -0.05), {}});
+      if (pinned) m.pins.push_back({"floor", test::nodes_at(m, 1, -0.05), {}});
       finish(m);
       State state = initial_state(m);
       test::tangle_nodes(m, tangle, state.position);

@@ -26,13 +26,13 @@ concept DampingTerm = requires(const Configuration& at, std::span<const Vec3> v,
 struct DashpotTerm {
   static double power(const Configuration& at, std::span<const Vec3> v) {
     double sum = 0.0;
-    for_each_pull(at, v, [&](const Edge&, const SpringPull& pull) { sum += pull.heat; });
+    for_each_dashpot(at, v, [&](const Edge&, const SpringForce& dashpot) { sum += dashpot.heat; });
     return sum;
   }
   static void add_forces(const Configuration& at, std::span<const Vec3> v, std::span<Vec3> forces) {
-    for_each_pull(at, v, [&](const Edge& ends, const SpringPull& pull) {
-      forces[uz(ends[0])] += pull.force;
-      forces[uz(ends[1])] -= pull.force;
+    for_each_dashpot(at, v, [&](const Edge& ends, const SpringForce& dashpot) {
+      forces[uz(ends[0])] += dashpot.force;
+      forces[uz(ends[1])] -= dashpot.force;
     });
   }
   template <class F>
@@ -49,11 +49,11 @@ struct DashpotTerm {
 
  private:
   template <class F>
-  static void for_each_pull(const Configuration& at, std::span<const Vec3> v, const F& f) {
+  static void for_each_dashpot(const Configuration& at, std::span<const Vec3> v, const F& f) {
     for (std::size_t s = 0; s < at.model.springs.size(); ++s) {
       const Edge& ends = at.model.springs[s];
-      f(ends, dashpot_pull(at.x[uz(ends[1])] - at.x[uz(ends[0])], v[uz(ends[1])] - v[uz(ends[0])],
-                           at.model.damping[s]));
+      f(ends, dashpot_force(at.x[uz(ends[1])] - at.x[uz(ends[0])], v[uz(ends[1])] - v[uz(ends[0])],
+                            at.model.damping[s]));
     }
   }
 };

@@ -41,7 +41,7 @@ bool is_name_character(char c) {
 }
 
 std::string nearest(std::string_view word, std::span<const std::string_view> known) {
-  constexpr std::size_t kShortestStem = 4;
+  constexpr std::size_t shortest_stem = 4;
   const std::string wanted = lower_case(word);
   std::string best;
   std::size_t fewest = 0;
@@ -62,7 +62,7 @@ std::string nearest(std::string_view word, std::span<const std::string_view> kno
   if (!best.empty()) return best;
   for (const std::string_view candidate : known) {
     const std::string name = lower_case(candidate);
-    if (std::min(name.size(), wanted.size()) < kShortestStem) continue;
+    if (std::min(name.size(), wanted.size()) < shortest_stem) continue;
     if (wanted.starts_with(name) || name.starts_with(wanted)) return std::string(candidate);
   }
   return {};

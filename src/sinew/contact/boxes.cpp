@@ -1,7 +1,6 @@
 #include "sinew/contact/boxes.h"
 
 #include <algorithm>
-#include <cmath>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sinew/contact/boxes.cpp"
@@ -89,14 +88,6 @@ namespace {
 
 constexpr Index longest_vector = 64;  // floats in a vector, for any instruction set
 
-float rounded_down(double x) {
-  return static_cast<float>(x - 1e-6 * std::abs(x));
-}
-
-float rounded_up(double x) {
-  return static_cast<float>(x + 1e-6 * std::abs(x));
-}
-
 std::array<float, 6> rounded_out(const Box& box) {
   std::array<float, 6> sides;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -128,14 +119,15 @@ void Boxes::add(const Box& box, Index item) {
   item_[uz(count_++)] = item;
 }
 
-void Boxes::add_overlapping(const Boxes& other, const Box& box, const Vec3& way, double off) {
+void Boxes::add_overlapping(const Boxes& other, const Box& box, const Vec3& displacement,
+                            double margin) {
   if (other.count_ == 0) return;
   make_room(other.count_);
   const std::array<float, 6> with = rounded_out(box);
   std::array<float, 6> shift;
   for (std::size_t c = 0; c < 3; ++c) {
-    shift[c] = rounded_down(std::min(0.0, way.data()[c]) - off);
-    shift[c + 3] = rounded_up(std::max(0.0, way.data()[c]) + off);
+    shift[c] = rounded_down(std::min(0.0, displacement.data()[c]) - margin);
+    shift[c + 3] = rounded_up(std::max(0.0, displacement.data()[c]) + margin);
   }
   std::array<float*, 6> to;
   for (std::size_t c = 0; c < 6; ++c) to[c] = side_[c].data() + count_;

@@ -2,11 +2,20 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <vector>
 
 #include "sinew/contact/box_tree.h"
 
 namespace sinew {
+
+// Single-precision bounds of a value, on either side of it.
+inline float rounded_down(double x) {
+  return static_cast<float>(x - 1e-6 * std::abs(x));
+}
+inline float rounded_up(double x) {
+  return static_cast<float>(x + 1e-6 * std::abs(x));
+}
 
 class Boxes {
  public:
@@ -17,8 +26,8 @@ class Boxes {
   void add(const Box& box, Index item);
 
   // Adds the boxes of `other` that overlap `box`. Each added box covers its displacements from 0 to
-  // `way` and is larger by `off` [m] on all sides.
-  void add_overlapping(const Boxes& other, const Box& box, const Vec3& way, double off);
+  // `displacement` and is larger by `margin` [m] on all sides.
+  void add_overlapping(const Boxes& other, const Box& box, const Vec3& displacement, double margin);
 
   // The items whose boxes overlap `box`, in their order.
   void find(const Box& box, std::vector<Index>& items) const;

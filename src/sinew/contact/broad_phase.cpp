@@ -12,10 +12,6 @@ namespace {
 // more parts.
 constexpr Index part_size = 80;
 
-float rounded_down(double x) {
-  return static_cast<float>(x - 1e-6 * std::abs(x));
-}
-
 Box box_of(const Vec3& x) {
   return {x, x};
 }
@@ -41,9 +37,9 @@ void NeighbourList::clear() {
   start.assign(1, 0);
 }
 
-std::vector<SurfacePart> parts_of(Index owner, const NarrowPhase& touching,
+std::vector<SurfacePart> parts_of(Index owner, const NarrowPhase& narrow_phase,
                                   const std::vector<Vec3>& rest) {
-  const TouchSurface& s = touching.surface();
+  const ContactSurface& s = narrow_phase.surface();
   const Range triangles = s.owner_triangles[uz(owner)];
   std::vector<Vec3> centres;
   for (Index t = triangles.begin; t < triangles.end; ++t) {
@@ -77,15 +73,15 @@ std::vector<SurfacePart> parts_of(Index owner, const NarrowPhase& touching,
   }
   const Range edges = s.owner_edges[uz(owner)];
   for (Index e = edges.begin; e < edges.end; ++e) {
-    if (!touching.may_meet(e)) continue;
+    if (!narrow_phase.may_contact(e)) continue;
     const Index t = s.edge_triangles[uz(e)][0];
     parts[uz(part_of[uz(t - triangles.begin)])].edges.push_back(e);
   }
   return parts;
 }
 
-void fit_boxes(SurfacePart& part, const NarrowPhase& touching, const std::vector<Vec3>& to) {
-  const TouchSurface& s = touching.surface();
+void fit_boxes(SurfacePart& part, const NarrowPhase& narrow_phase, const std::vector<Vec3>& to) {
+  const ContactSurface& s = narrow_phase.surface();
   part.triangle_boxes.clear();
   for (const Index t : part.triangles) {
     part.triangle_boxes.add(box_around(s.triangles[uz(t)], to), t);
@@ -97,7 +93,7 @@ void fit_boxes(SurfacePart& part, const NarrowPhase& touching, const std::vector
   for (const Index e : part.edges) {
     const Box box = box_around(s.edges[uz(e)], to);
     for (const bool self : {false, true}) {
-      (touching.is_sharp(e, self) ? part.sharp_edges : part.other_edges)[self].add(box, e);
+      (narrow_phase.is_sharp(e, self) ? part.sharp_edges : part.other_edges)[self].add(box, e);
     }
   }
   part.fitted = true;
@@ -109,7 +105,7 @@ void NearFinder::mark_neighbours(Index slot, Scratch& scratch) const {
 }
 
 void NearFinder::list_nodes(const Search& search, Scratch& scratch, NeighbourList& list) const {
-  const TouchSurface& s = narrow_phase_.surface();
+  const ContactSurface& s = narrow_phase_.surface();
   const auto& x = search.moves.to;
   const auto marked = [&](Index i) { return scratch.mark[uz(i)] == scratch.now; };
   for (const Index slot : search.part.nodes) {
@@ -129,7 +125,7 @@ void NearFinder::list_nodes(const Search& search, Scratch& scratch, NeighbourLis
         distance = std::sqrt(
             nearest_on_triangle(p, x[uz(tri[0])], x[uz(tri[1])], x[uz(tri[2])]).distance2);
         if (distance > range) continue;
-        if (search.self && narrow_phase_.node_apart(slot, t, distance - search.more)) continue;
+        if (search.self && narrow_phase_.node_too_far(slot, t, distance - search.more)) continue;
       }
       scratch.near.emplace_back(rounded_down(distance), t);
     }
@@ -138,7 +134,7 @@ void NearFinder::list_nodes(const Search& search, Scratch& scratch, NeighbourLis
 }
 
 void NearFinder::list_edges(const Search& search, Scratch& scratch, NeighbourList& list) const {
-  const TouchSurface& s = narrow_phase_.surface();
+  const ContactSurface& s = narrow_phase_.surface();
   const auto& x = search.moves.to;
   const auto marked = [&](Index i) { return scratch.mark[uz(i)] == scratch.now; };
   for (const Index e : search.part.edges) {
@@ -152,7 +148,7 @@ void NearFinder::list_edges(const Search& search, Scratch& scratch, NeighbourLis
       mark_neighbours(narrow_phase_.slot_of(edge[1]), scratch);
     }
     scratch.near.clear();
-    const auto look_at = [&](const Boxes& boxes) {
+    const auto add_near = [&](const Boxes& boxes) {
       boxes.find(box, scratch.found);
       for (const Index other : scratch.found) {
         const Edge& o = s.edges[uz(other)];
@@ -161,13 +157,14 @@ void NearFinder::list_edges(const Search& search, Scratch& scratch, NeighbourLis
         if (!search.swept) {
           distance = segments_distance(x[uz(edge[0])], x[uz(edge[1])], x[uz(o[0])], x[uz(o[1])]);
           if (distance > range) continue;
-          if (search.self && narrow_phase_.edges_apart(e, other, distance - search.more)) continue;
+          if (search.self && narrow_phase_.edges_too_far(e, other, distance - search.more))
+            continue;
         }
         scratch.near.emplace_back(rounded_down(distance), other);
       }
     };
-    look_at(scratch.sharp_edges);
-    if (narrow_phase_.is_sharp(e, search.self)) look_at(scratch.other_edges);
+    add_near(scratch.sharp_edges);
+    if (narrow_phase_.is_sharp(e, search.self)) add_near(scratch.other_edges);
     close_key(scratch.near, e, list);
   }
 }
@@ -196,22 +193,23 @@ void NearFinder::make(NearPart& near, double more, bool swept, const Moves& move
   }
   const Box around = part.track.end_box().grown(range + more);
   for (const NearPart::Other& near_other : near.others) {
-    // Relative to the part, the other part moves by `way`; the nodes deviate by at most `off`.
+    // Relative to the part, the other part moves by `shift`; the nodes deviate by at most
+    // `deviation`.
     const SurfacePart& other = parts_[uz(near_other.part)];
-    Vec3 way = Vec3::Zero();
-    double off = 0.0;
+    Vec3 shift = Vec3::Zero();
+    double deviation = 0.0;
     Box whole = around;
     if (swept) {
-      way = part.track.step().shift() - other.track.step().shift();
-      off = part.track.step().off() + other.track.step().off();
-      whole.add(Box{around.lo - way, around.hi - way});
-      whole = whole.grown(off);
+      shift = part.track.step().shift() - other.track.step().shift();
+      deviation = part.track.step().deviation() + other.track.step().deviation();
+      whole.add(Box{around.lo - shift, around.hi - shift});
+      whole = whole.grown(deviation);
     }
-    scratch.triangles.add_overlapping(other.triangle_boxes, whole, way, off);
+    scratch.triangles.add_overlapping(other.triangle_boxes, whole, shift, deviation);
     if (!with_edges) continue;
     const bool self = search.self;
-    scratch.sharp_edges.add_overlapping(other.sharp_edges[self], whole, way, off);
-    scratch.other_edges.add_overlapping(other.other_edges[self], whole, way, off);
+    scratch.sharp_edges.add_overlapping(other.sharp_edges[self], whole, shift, deviation);
+    scratch.other_edges.add_overlapping(other.other_edges[self], whole, shift, deviation);
   }
   list_nodes(search, scratch, near.nodes);
   if (with_edges) list_edges(search, scratch, near.edges);

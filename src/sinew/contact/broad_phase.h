@@ -37,7 +37,7 @@ struct SurfacePart {
   Index owner = 0;
   std::vector<Index> nodes;      // node slots, ascending
   std::vector<Index> triangles;  // ascending
-  std::vector<Index> edges;      // edges that may touch others, ascending
+  std::vector<Index> edges;      // edges that may be in contact with others, ascending
   RigidMotionBound track;
 
   // Boxes at the end of the step, valid if `fitted`: of the triangles; of the edges that are sharp
@@ -48,11 +48,11 @@ struct SurfacePart {
 };
 
 // All parts of an owner's surface.
-std::vector<SurfacePart> parts_of(Index owner, const NarrowPhase& touching,
+std::vector<SurfacePart> parts_of(Index owner, const NarrowPhase& narrow_phase,
                                   const std::vector<Vec3>& rest);
 
 // Fits the part's boxes to the end of the step.
-void fit_boxes(SurfacePart& part, const NarrowPhase& touching, const std::vector<Vec3>& to);
+void fit_boxes(SurfacePart& part, const NarrowPhase& narrow_phase, const std::vector<Vec3>& to);
 
 // The features of an owner's surface that are near a part of another owner, or of the same one.
 struct NearPart {
@@ -76,8 +76,8 @@ struct NearPart {
 // Makes the lists. Several threads may call make() at the same time.
 class NearFinder {
  public:
-  NearFinder(const NarrowPhase& touching, const std::vector<SurfacePart>& parts)
-      : narrow_phase_(touching), parts_(parts) {}
+  NearFinder(const NarrowPhase& narrow_phase, const std::vector<SurfacePart>& parts)
+      : narrow_phase_(narrow_phase), parts_(parts) {}
 
   // Makes the lists of a part with its `others`, whose boxes have been fitted. The lists hold the
   // features within `more` [m] of its range at the end of the step; with `swept`, those that come

@@ -69,7 +69,7 @@ std::optional<shapes::SurfacePoint> wall_for(const S& shape, const Vec3& q0, con
 }
 
 // The share of the step after which the gap becomes 0, from the gaps at its start and end.
-double moment_of(double before, double after) {
+double impact_time(double before, double after) {
   if (after >= 0.0) return 1.0;
   return before <= 0.0 ? 0.0 : before / (before - after);
 }
@@ -87,9 +87,9 @@ void add_node(const Moving<S>& m, Index node, const std::vector<Vec3>& from,
   c.count = 1;
   c.normal = m.after.turn * wall->normal;
   c.anchor = m.after.at(wall->anchor);
-  c.way = m.after.at(wall->nearest) - m.before.at(wall->nearest);
+  c.anchor_displacement = m.after.at(wall->nearest) - m.before.at(wall->nearest);
   c.gap = contact_gap(c, to);
-  c.moment = moment_of(wall->normal.dot(q0 - wall->nearest), c.gap);
+  c.time_of_impact = impact_time(wall->normal.dot(q0 - wall->nearest), c.gap);
   c.friction = m.obstacle->friction;
   c.restitution = m.obstacle->restitution;
   c.id = {ContactKind::node_shape, m.index, node, -1};
@@ -122,8 +122,8 @@ bool is_small(const Model& model, const Triangle& t, double longest) {
 Eigen::AlignedBox3d box_around(const MovingRod& rod, double reach) {
   Eigen::AlignedBox3d box;
   for (const Vec3* end : {&rod.a0, &rod.b0, &rod.a1, &rod.b1}) box.extend(*end);
-  const Vec3 off = Vec3::Constant(rod.radius + reach);
-  return {box.min() - off, box.max() + off};
+  const Vec3 margin = Vec3::Constant(rod.radius + reach);
+  return {box.min() - margin, box.max() + margin};
 }
 
 template <SolidShape S>
@@ -162,12 +162,12 @@ void add_triangles(const Model& model, const Moving<S>& m, std::size_t body,
     for (std::size_t i = first; i < out.size(); ++i) {
       Contact& c = out[i];
       const Vec3 place = m.after.own(c.anchor);
-      c.way = c.anchor - m.before.at(place);
-      double before = -c.normal.dot(c.anchor - c.way);
+      c.anchor_displacement = c.anchor - m.before.at(place);
+      double before = -c.normal.dot(c.anchor - c.anchor_displacement);
       for (int a = 0; a < c.count; ++a)
         before += c.weight[static_cast<std::size_t>(a)] *
                   c.normal.dot(from[uz(c.node[static_cast<std::size_t>(a)])]);
-      c.moment = moment_of(before, c.gap);
+      c.time_of_impact = impact_time(before, c.gap);
       c.friction = m.obstacle->friction;
       c.restitution = m.obstacle->restitution;
       c.id.owner = m.index;
@@ -337,7 +337,7 @@ void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
       const double weight = sign * c.weight[static_cast<std::size_t>(a)];
       if (node >= bodies) {
         out.anchor -= weight * to[uz(node)];
-        out.way -= weight * (to[uz(node)] - from[uz(node)]);
+        out.anchor_displacement -= weight * (to[uz(node)] - from[uz(node)]);
       } else {
         out.node[static_cast<std::size_t>(out.count)] = node;
         out.weight[static_cast<std::size_t>(out.count)] = weight;

@@ -33,8 +33,8 @@ void find_collider_contacts(const Model& model, const Controls& controls,
                             double t1, const ContactReach& reach, std::vector<Contact>& out);
 
 // Turns contacts between nodes of bodies and of rigid meshes (SurfaceContacts) into contacts with
-// an obstacle: `anchor` and `way` replace the mesh's nodes; friction and restitution are those of
-// the obstacle. Other contacts stay as they are.
+// an obstacle: `anchor` and `anchor_displacement` replace the mesh's nodes; friction and
+// restitution are those of the obstacle. Other contacts stay as they are.
 void name_rigid_contacts(const Model& model, const std::vector<Vec3>& from,
                          const std::vector<Vec3>& to, std::vector<Contact>& contacts);
 

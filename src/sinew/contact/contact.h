@@ -1,4 +1,4 @@
-// A contact: a condition on the distance between a node or edge and the feature that it touches.
+// A contact: a condition on the distance between a node or edge and another feature.
 // contact/surfaces.h and contact/colliders.h find contacts; contact/contact_solver.h solves them in
 // explicit steps, solver/constraints.h in implicit steps and rest states.
 // docs/methods/contact.md.
@@ -12,8 +12,8 @@
 
 namespace sinew {
 
-// A condition on one to four nodes. The position of the node or edge relative to the feature that
-// it touches is
+// A condition on one to four nodes. The position of the node or edge relative to the other feature
+// is
 //
 //   r(x) = sum_a weight_a x_a - anchor,      gap(x) = normal . r(x) >= 0
 //
@@ -26,16 +26,15 @@ struct Contact {
   std::array<Index, 4> node = {-1, -1, -1, -1};  // node ids; the first `count` are used
   std::array<double, 4> weight = {};             // [-]
   int count = 0;                                 // nodes used, 1 to 4
-  Vec3 normal =
-      Vec3::UnitY();  // [-] unit, points out of the touched triangle, second edge or collider
-  Vec3 anchor = Vec3::Zero();  // [m] on the collider's surface, at the end of the step
-  Vec3 way = Vec3::Zero();  // [m] displacement of the collider's surface at the anchor in the step
-  double gap = 0.0;         // [m] at the end of the step; < 0: inside
-  double moment = 1.0;  // [-] in [0, 1]: the share of the step after which the gap became 0; 0: it
-                        // was 0 or less from the start
-  double friction = 0.0;     // [-] Coulomb's mu
-  double restitution = 0.0;  // [-]
-  ContactId id;              // unique within a step
+  Vec3 normal = Vec3::UnitY();  // [-] unit, points out of the triangle, second edge or collider
+  Vec3 anchor = Vec3::Zero();   // [m] on the collider's surface, at the end of the step
+  Vec3 anchor_displacement = Vec3::Zero();  // [m] of the collider's surface in the step
+  double gap = 0.0;                         // [m] at the end of the step; < 0: inside
+  double time_of_impact = 1.0;  // [-] in [0, 1]: the share of the step after which the gap became
+                                // 0; 0: it was 0 or less from the start
+  double friction = 0.0;        // [-] Coulomb's mu
+  double restitution = 0.0;     // [-]
+  ContactId id;                 // unique within a step
 };
 
 // The gaps below which contacts are found [m]. A plane has its own reach: its condition is the same
@@ -48,7 +47,7 @@ struct ContactReach {
   double plane = 0.0;
 };
 
-// The position of the node or edge relative to the touched feature [m]: r(x) above.
+// The position of the node or edge relative to the other feature [m]: r(x) above.
 inline Vec3 contact_offset(const Contact& c, const std::vector<Vec3>& x) {
   Vec3 r = -c.anchor;
   for (int a = 0; a < c.count; ++a)

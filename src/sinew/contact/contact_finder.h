@@ -28,8 +28,8 @@ class ContactFinder {
 
   // The find functions give the contacts of a step from positions `from` at time t0 to `to` at time
   // t1 (nodes), with obstacles where the controls have them: places whose gap at `to` is below
-  // `reach` [m], and places that met on the way. The contacts are sorted by id and depend on the
-  // model and the arguments only.
+  // `reach` [m], and places that hit each other during the step. The contacts are sorted by id and
+  // depend on the model and the arguments only.
   //
   // Contacts with obstacles that have a shape; `contacts` is cleared.
   void find_shapes(const Controls& controls, const std::vector<Vec3>& from,

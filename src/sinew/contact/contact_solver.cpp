@@ -14,7 +14,7 @@ constexpr double small = 5e-4;  // share of the largest impulse; smaller changes
 
 // A contact that penetrates at the start of a step moves outwards by this share of its depth, and
 // at most at this speed [m/s]: overlaps at the start of a run do not burst apart.
-constexpr double way_out = 0.2;
+constexpr double share_out = 0.2;
 constexpr double speed_out = 0.1;
 
 // The energy that bounces may seem to create, as a share of the kinetic energy before them. The
@@ -30,7 +30,7 @@ inline Vec3 relative(const Impact& i, const std::vector<Vec3>& v) {
 }
 
 // v_a += weight_a / m_a change.
-inline void push(const Impact& i, const Vec3& change, std::vector<Vec3>& v) {
+inline void apply_impulse(const Impact& i, const Vec3& change, std::vector<Vec3>& v) {
   v[i.slot[0]] += i.share[0] * change;
   if (i.count == 1) return;
   for (std::size_t a = 1; a < 4; ++a) v[i.slot[a]] += i.share[a] * change;
@@ -63,7 +63,7 @@ std::uint32_t slot_of(Index node, const State& state, ContactScratch& s) {
 double least_without_bounce(const Arrival& arrival, double h) {
   const double start = arrival.contact->gap - h * arrival.velocity;
   const double end =
-      start < 0.0 ? std::min(0.0, start + std::min(-way_out * start, h * speed_out)) : 0.0;
+      start < 0.0 ? std::min(0.0, start + std::min(-share_out * start, h * speed_out)) : 0.0;
   return (end - start) / h;
 }
 
@@ -73,11 +73,11 @@ void aim(const Model& model, const std::vector<Vec3>& force, double h, const Vec
   const Contact& c = *arrival.contact;
   arrival.bounces = arrival.known = false;
   impact.speed = Vec3::Zero();
-  if (c.id.obstacle() >= 0) impact.speed = c.way / h;
+  if (c.id.obstacle() >= 0) impact.speed = c.anchor_displacement / h;
   arrival.velocity = c.normal.dot(velocity - impact.speed);
   if (c.restitution > 0.0 && c.gap < 0.0) {
-    arrival.pull = acceleration(model, c, force);
-    arrival.after = rebound(c.gap, arrival.velocity, arrival.pull, h, c.restitution);
+    arrival.acceleration = acceleration(model, c, force);
+    arrival.after = rebound(c.gap, arrival.velocity, arrival.acceleration, h, c.restitution);
     arrival.bounces = arrival.after.velocity > 0.0;
   }
   impact.least = arrival.bounces ? arrival.after.velocity : least_without_bounce(arrival, h);
@@ -116,7 +116,7 @@ void find_impacts(const Model& model, const std::vector<Contact>& contacts,
     impact.normal = c.normal;
     impact.friction = c.friction;
     impact.impulse = 0.0;
-    impact.grip = Vec3::Zero();
+    impact.friction_impulse = Vec3::Zero();
     s.arrivals[n].contact = &c;
     aim(model, force, h, velocity, impact, s.arrivals[n]);
     ++n;
@@ -128,7 +128,7 @@ void find_impacts(const Model& model, const std::vector<Contact>& contacts,
 // Warm start: a contact starts from the force of the same pair in the step before [N]. If the
 // feature has moved on to another part of the same owner, it starts from the force of that pair.
 // Both lists are sorted by id.
-void recall(const std::vector<ContactPush>& before, double kick, ContactScratch& s) {
+void recall(const std::vector<ContactForce>& before, double mean_step, ContactScratch& s) {
   s.velocity = s.predicted;
   if (before.empty()) return;
   s.taken.assign(before.size(), 0);
@@ -136,12 +136,12 @@ void recall(const std::vector<ContactPush>& before, double kick, ContactScratch&
     Impact& impact = s.impacts[k];
     s.taken[p] = 1;
     s.arrivals[k].known = true;
-    const Vec3 total = kick * before[p].push;
+    const Vec3 total = mean_step * before[p].force;
     const double along = impact.normal.dot(total);
     impact.impulse = std::max(0.0, along);
     // exchange() projects the tangential impulse onto the friction cone.
-    if (impact.friction > 0.0) impact.grip = total - along * impact.normal;
-    push(impact, impact.impulse * impact.normal + impact.grip, s.velocity);
+    if (impact.friction > 0.0) impact.friction_impulse = total - along * impact.normal;
+    apply_impulse(impact, impact.impulse * impact.normal + impact.friction_impulse, s.velocity);
   };
   std::size_t p = 0;
   bool all = true;
@@ -177,14 +177,14 @@ inline double exchange(Impact& i, std::vector<Vec3>& velocity) {
   i.impulse = impulse;
   Vec3 total = change * i.normal;
   if (i.friction > 0.0) {
-    Vec3 grip = i.grip - i.mass * (v - along * i.normal);
+    Vec3 friction_impulse = i.friction_impulse - i.mass * (v - along * i.normal);
     const double most = i.friction * impulse;
-    const double size2 = grip.squaredNorm();
-    if (size2 > most * most) grip *= most / std::sqrt(size2);
-    total += grip - i.grip;
-    i.grip = grip;
+    const double size2 = friction_impulse.squaredNorm();
+    if (size2 > most * most) friction_impulse *= most / std::sqrt(size2);
+    total += friction_impulse - i.friction_impulse;
+    i.friction_impulse = friction_impulse;
   }
-  push(i, total, velocity);
+  apply_impulse(i, total, velocity);
   return total.squaredNorm();
 }
 
@@ -203,33 +203,34 @@ int exchange_all(ContactScratch& s) {
 
 // The energy loss of a single impact in free flight, minus the loss by the mean of the velocities:
 // the mean does not know the time of the impact within the step. [J]
-double moment_correction(const Impact& i, const Arrival& a, double kick) {
+double impact_time_correction(const Impact& i, const Arrival& a, double mean_step) {
   if (!a.bounces) return 0.0;
   const double alone = i.mass * (a.after.velocity - a.velocity);  // impulse
   if (!(alone > 0.0)) return 0.0;
-  const double mean = 0.5 * (a.velocity - kick * a.pull + a.after.velocity);
+  const double mean = 0.5 * (a.velocity - mean_step * a.acceleration + a.after.velocity);
   return std::min(1.0, i.impulse / alone) * (i.mass * a.after.loss + alone * mean);
 }
 
 // The velocity of a slot's node before the forces of the step [m/s].
-Vec3 velocity_before(const Model& model, const std::vector<Vec3>& force, double kick,
+Vec3 velocity_before(const Model& model, const std::vector<Vec3>& force, double mean_step,
                      const ContactScratch& s, std::size_t slot) {
   const auto i = uz(s.node[slot]);
-  return s.predicted[slot] - (kick * model.inverse_mass[i]) * force[i];
+  return s.predicted[slot] - (mean_step * model.inverse_mass[i]) * force[i];
 }
 
 // The work of the impulses, with the mean of the velocities of the half-steps before and after,
 // minus the work of moving colliders. [J]
-double work_within(const Model& model, const std::vector<Vec3>& force, double kick,
+double work_within(const Model& model, const std::vector<Vec3>& force, double mean_step,
                    const ContactScratch& s) {
   double work = 0.0;
   for (std::size_t k = 1; k < s.node.size(); ++k) {
     const auto i = uz(s.node[k]);
     if (model.inverse_mass[i] == 0.0) continue;
-    const Vec3 twice = velocity_before(model, force, kick, s, k) + s.velocity[k];
+    const Vec3 twice = velocity_before(model, force, mean_step, s, k) + s.velocity[k];
     work += 0.5 * model.mass[i] * (s.velocity[k] - s.predicted[k]).dot(twice);
   }
-  for (const Impact& i : s.impacts) work -= (i.impulse * i.normal + i.grip).dot(i.speed);
+  for (const Impact& i : s.impacts)
+    work -= (i.impulse * i.normal + i.friction_impulse).dot(i.speed);
   return work;
 }
 
@@ -237,7 +238,7 @@ double work_within(const Model& model, const std::vector<Vec3>& force, double ki
 // tolerance; otherwise 0. Of the contacts that do not bounce, only those count that would have
 // separated by themselves and that the bounces of others have pushed together. The other contacts
 // balance forces, which do as much work. [J]
-double energy_of_bounces(const ContactScratch& s, double kick) {
+double energy_of_bounces(const ContactScratch& s, double mean_step) {
   double brought = 0.0;
   double made = 0.0;
   for (std::size_t k = 0; k < s.impacts.size(); ++k) {
@@ -247,8 +248,8 @@ double energy_of_bounces(const ContactScratch& s, double kick) {
     const double after = i.normal.dot(relative(i, s.velocity) - i.speed);
     if (a.bounces) {
       brought += 0.5 * i.mass * a.velocity * a.velocity;
-      const double before = a.velocity - kick * a.pull;
-      made += i.impulse * 0.5 * (before + after) - moment_correction(i, a, kick);
+      const double before = a.velocity - mean_step * a.acceleration;
+      made += i.impulse * 0.5 * (before + after) - impact_time_correction(i, a, mean_step);
     } else {
       made += i.impulse * 0.5 * (a.velocity + after);
     }
@@ -262,22 +263,22 @@ double energy_of_bounces(const ContactScratch& s, double kick) {
 // without bound. In that case the velocities are v0 + s (v1 - v0), v1 with the bounces, v0 without;
 // s removes the created energy [J]. Both v0 and v1 conserve momentum and satisfy the contacts, so
 // the velocities between them do too.
-void bounce_less(const Model& model, const std::vector<Vec3>& force, double kick, double h,
+void bounce_less(const Model& model, const std::vector<Vec3>& force, double mean_step, double h,
                  double made, ContactScratch& s) {
   const std::vector<Impact> with = s.impacts;
   std::vector<Vec3> change = s.velocity;  // v1 - v0 (slots)
-  const double work = work_within(model, force, kick, s);
+  const double work = work_within(model, force, mean_step, s);
   s.velocity = s.predicted;
   for (std::size_t k = 0; k < s.impacts.size(); ++k) {
     Impact& i = s.impacts[k];
     if (s.arrivals[k].bounces) i.least = least_without_bounce(s.arrivals[k], h);
     s.arrivals[k].bounces = false;
     i.impulse = 0.0;
-    i.grip.setZero();
+    i.friction_impulse.setZero();
   }
   exchange_all(s);
   // a s^2 + b s + c = 0: the work at s equals the work with all bounces, minus the created energy.
-  const double c = work_within(model, force, kick, s) - (work - made);
+  const double c = work_within(model, force, mean_step, s) - (work - made);
   double a = 0.0;
   for (std::size_t k = 1; k < s.node.size(); ++k) {
     const auto i = uz(s.node[k]);
@@ -291,14 +292,15 @@ void bounce_less(const Model& model, const std::vector<Vec3>& force, double kick
   for (std::size_t k = 1; k < s.node.size(); ++k) s.velocity[k] += share * change[k];
   for (std::size_t k = 0; k < s.impacts.size(); ++k) {
     s.impacts[k].impulse += share * (with[k].impulse - s.impacts[k].impulse);
-    s.impacts[k].grip += share * (with[k].grip - s.impacts[k].grip);
+    s.impacts[k].friction_impulse +=
+        share * (with[k].friction_impulse - s.impacts[k].friction_impulse);
   }
 }
 
 // Updates velocities and positions of the nodes. The work of an impulse uses the mean of the
 // velocities of the half-steps before and after, as in Verlet's energy balance: it is 0 for a body
 // at rest and for sticking friction. Returns the energy that the bodies gain [J].
-double move_nodes(const Model& model, const std::vector<Vec3>& force, double kick, double h,
+double move_nodes(const Model& model, const std::vector<Vec3>& force, double mean_step, double h,
                   ContactScratch& s, State& state) {
   double gained = 0.0;
   s.mean.resize(s.node.size());
@@ -307,7 +309,7 @@ double move_nodes(const Model& model, const std::vector<Vec3>& force, double kic
     const auto i = uz(s.node[k]);
     const Vec3& v = s.velocity[k];
     const Vec3 change = v - s.predicted[k];
-    s.mean[k] = 0.5 * (velocity_before(model, force, kick, s, k) + v);
+    s.mean[k] = 0.5 * (velocity_before(model, force, mean_step, s, k) + v);
     if (model.inverse_mass[i] == 0.0) continue;
     gained += model.mass[i] * change.dot(s.mean[k]);
     state.half_velocity[i] = v;
@@ -322,21 +324,21 @@ ContactReport solve_contacts(const Model& model, const std::vector<Contact>& con
                              const std::vector<Vec3>& force, double h, State& state,
                              ContactScratch& s) {
   ContactReport report;
-  std::vector<ContactPush>& pushes = state.reactions.contacts;
+  std::vector<ContactForce>& contact_forces = state.reactions.contacts;
   find_impacts(model, contacts, force, h, state, s);
   if (s.impacts.empty()) {
-    pushes.clear();
+    contact_forces.clear();
     return report;
   }
-  const double kick = 0.5 * (state.last_step + h);
-  recall(pushes, kick, s);
+  const double mean_step = 0.5 * (state.last_step + h);
+  recall(contact_forces, mean_step, s);
   report.sweeps = exchange_all(s);
-  const double made = energy_of_bounces(s, kick);
-  if (made > 0.0) bounce_less(model, force, kick, h, made, s);
-  const double gained = move_nodes(model, force, kick, h, s, state);
+  const double made = energy_of_bounces(s, mean_step);
+  if (made > 0.0) bounce_less(model, force, mean_step, h, made, s);
+  const double gained = move_nodes(model, force, mean_step, h, s, state);
 
   bool bounced = false;
-  pushes.clear();
+  contact_forces.clear();
   for (std::size_t k = 0; k < s.impacts.size(); ++k) {
     const Impact& i = s.impacts[k];
     const Arrival& a = s.arrivals[k];
@@ -349,16 +351,16 @@ ContactReport solve_contacts(const Model& model, const std::vector<Contact>& con
       const double shift = a.after.gap - (c.gap + h * (a.after.velocity - a.velocity));
       for (std::size_t n = 0; n < static_cast<std::size_t>(c.count); ++n)
         state.position[uz(c.node[n])] += (i.share[n] * i.mass * shift) * c.normal;
-      report.dissipated += moment_correction(i, a, kick);
+      report.dissipated += impact_time_correction(i, a, mean_step);
     }
-    const Vec3 total = i.impulse * i.normal + i.grip;
+    const Vec3 total = i.impulse * i.normal + i.friction_impulse;
     report.work_in += total.dot(i.speed);
-    report.friction -= i.grip.dot(relative(i, s.mean) - i.speed);
+    report.friction -= i.friction_impulse.dot(relative(i, s.mean) - i.speed);
     const Index obstacle = c.id.obstacle();
-    if (obstacle >= 0) state.obstacle_force[uz(obstacle)] -= total / kick;
+    if (obstacle >= 0) state.obstacle_force[uz(obstacle)] -= total / mean_step;
     const double along = i.normal.dot(relative(i, s.velocity) - i.speed);
     report.deepest = std::max(report.deepest, -(c.gap + h * (along - a.velocity)));
-    pushes.push_back({c.id, c.node, c.weight, total / kick});
+    contact_forces.push_back({c.id, c.node, c.weight, total / mean_step});
   }
   if (bounced) {
     report.deepest = 0.0;

@@ -27,26 +27,26 @@ struct ContactScratch {
   // `velocity`; unused slots are 0, which belongs to no node and has weight 0.
   struct Impact {
     std::array<std::uint32_t, 4> slot = {};
-    std::array<double, 4> weight = {};  // [-]
-    std::array<double, 4> share = {};   // weight / m: velocity change per impulse [1/kg]
-    Vec3 normal = Vec3::Zero();         // [-]
-    Vec3 speed = Vec3::Zero();          // of the collider's surface [m/s]
-    Vec3 grip = Vec3::Zero();           // tangential impulse [N s]
-    double impulse = 0.0;               // normal impulse [N s]
-    double mass = 0.0;                  // effective mass: 1 / sum_a weight_a^2 / m_a [kg]
-    double least = 0.0;                 // smallest allowed velocity along [m/s]
-    double friction = 0.0;              // [-]
-    int count = 0;                      // nodes used
+    std::array<double, 4> weight = {};     // [-]
+    std::array<double, 4> share = {};      // weight / m: velocity change per impulse [1/kg]
+    Vec3 normal = Vec3::Zero();            // [-]
+    Vec3 speed = Vec3::Zero();             // of the collider's surface [m/s]
+    Vec3 friction_impulse = Vec3::Zero();  // tangential impulse [N s]
+    double impulse = 0.0;                  // normal impulse [N s]
+    double mass = 0.0;                     // effective mass: 1 / sum_a weight_a^2 / m_a [kg]
+    double least = 0.0;                    // smallest allowed velocity along [m/s]
+    double friction = 0.0;                 // [-]
+    int count = 0;                         // nodes used
   };
   // The part of a contact that the sweeps do not need.
   struct Arrival {
     const Contact* contact = nullptr;
-    double velocity = 0.0;  // along, predicted [m/s]
-    double pull = 0.0;      // along, acceleration [m/s2]; if it may bounce
-    bool bounces = false;   // with the rebound `after`
+    double velocity = 0.0;      // along, predicted [m/s]
+    double acceleration = 0.0;  // along [m/s2]; if it may bounce
+    bool bounces = false;       // with the rebound `after`
     Rebound after;
-    std::size_t recalled = 0;  // index of its push in the step before, or where it would be
-    bool known = false;        // the push exists
+    std::size_t recalled = 0;  // index of its force in the step before, or where it would be
+    bool known = false;        // that force exists
   };
   std::vector<Impact> impacts;      // of contacts with a free node
   std::vector<Arrival> arrivals;    // (impacts)
@@ -55,7 +55,7 @@ struct ContactScratch {
   std::vector<Vec3> predicted;      // [m/s] (slots)
   std::vector<Vec3> mean;           // of the velocities before and after the step [m/s] (slots)
   std::vector<std::uint32_t> slot;  // slot of a node, 0: no contact (nodes)
-  std::vector<char> taken;          // 1: recalled (pushes of the step before)
+  std::vector<char> taken;          // 1: recalled (forces of the step before)
 };
 
 // Corrects a step of length h that violates the contacts. `state` holds the predicted positions and

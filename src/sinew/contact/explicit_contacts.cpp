@@ -11,12 +11,12 @@ constexpr double rests_within = 10.0;
 
 // Whether every contact of the step before is found again: for each feature and owner at least as
 // many contacts, possibly with other partners. Both lists are sorted by id.
-bool all_found(std::span<const ContactPush> pushes, std::span<const Contact> contacts) {
+bool all_found(std::span<const ContactForce> contact_forces, std::span<const Contact> contacts) {
   auto c = contacts.begin();
-  for (const ContactPush& p : pushes) {
+  for (const ContactForce& p : contact_forces) {
     while (c != contacts.end() && c->id < p.id && !c->id.same_feature(p.id)) ++c;
     if (c == contacts.end() || !c->id.same_feature(p.id)) return false;
-    ++c;  // found for this push
+    ++c;  // found for this force
   }
   return true;
 }
@@ -24,13 +24,13 @@ bool all_found(std::span<const ContactPush> pushes, std::span<const Contact> con
 // Whether no contact of the step before moves by more than `most` [m] in this step.
 bool rests(const State& state, const std::vector<Vec3>& before, double most) {
   return std::all_of(state.reactions.contacts.begin(), state.reactions.contacts.end(),
-                     [&](const ContactPush& p) {
-                       Vec3 way = Vec3::Zero();
+                     [&](const ContactForce& p) {
+                       Vec3 displacement = Vec3::Zero();
                        for (std::size_t a = 0; a < p.count(); ++a) {
                          const auto i = uz(p.node[a]);
-                         way += p.weight[a] * (state.position[i] - before[i]);
+                         displacement += p.weight[a] * (state.position[i] - before[i]);
                        }
-                       return way.squaredNorm() <= most * most;
+                       return displacement.squaredNorm() <= most * most;
                      });
 }
 
@@ -50,12 +50,12 @@ bool ExplicitContacts::hold(const std::vector<Vec3>& before, const std::vector<V
   if (finder_.explicit_reach() == 0.0) return false;  // no contacts share nodes
   warm_start(state, force, sum_, holds_);
   if (holds_.empty()) return false;
-  const double kick = 0.5 * (state.last_step + h);
+  const double mean_step = 0.5 * (state.last_step + h);
   predicted_.clear();
   for (const NodeHold& hold : holds_) {
     const auto i = uz(hold.node);
     predicted_.push_back(state.position[i]);
-    state.position[i] += (h * kick * model_.inverse_mass[i] * hold.share) * hold.push;
+    state.position[i] += (h * mean_step * model_.inverse_mass[i] * hold.share) * hold.force;
   }
   return rests(state, before, rests_within * finder_.explicit_reach());
 }
@@ -87,17 +87,17 @@ void ExplicitContacts::find(const Controls& controls, const std::vector<Vec3>& b
     find_surfaces();
   }
   let_go(state);
-  const std::span<const ContactPush> pushes = state.reactions.contacts;
+  const std::span<const ContactForce> contact_forces = state.reactions.contacts;
   const auto of_shapes = static_cast<std::size_t>(
-      std::partition_point(pushes.begin(), pushes.end(),
-                           [](const ContactPush& p) { return p.id.with_shape(); }) -
-      pushes.begin());
-  if (held && all_found(pushes.first(of_shapes), contacts_)) {
+      std::partition_point(contact_forces.begin(), contact_forces.end(),
+                           [](const ContactForce& p) { return p.id.with_shape(); }) -
+      contact_forces.begin());
+  if (held && all_found(contact_forces.first(of_shapes), contacts_)) {
     measure_gaps(contacts_);
   } else {
     find_shapes();
   }
-  if (held && all_found(pushes.subspan(of_shapes), surfaces_)) {
+  if (held && all_found(contact_forces.subspan(of_shapes), surfaces_)) {
     measure_gaps(surfaces_);
   } else {
     find_surfaces();

@@ -57,7 +57,7 @@ MotionBound::MotionBound(std::vector<Index> nodes, const std::vector<Vec3>& x)
   }
 }
 
-void MotionBound::look(const Moves& moves) {
+void MotionBound::update(const Moves& moves) {
   if (nodes_.empty()) return;
   Extent since, step;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -75,7 +75,7 @@ void MotionBound::look(const Moves& moves) {
 
 void MotionBound::renew(const Moves& moves) {
   travel_ += since_.shift();
-  drift_ += since_.off();
+  past_deviation_ += since_.deviation();
   reference_box_ = {};
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
     reference_[i] = moves.to[uz(nodes_[i])];
@@ -92,13 +92,13 @@ Box MotionBound::box() const {
 }
 
 // The displacement since the mark is the one since the present reference, plus those between
-// references, minus the one at the mark. Each is its shift, with a deviation of at most its off.
+// references, minus the one at the mark. Each is its shift, up to its deviation.
 double moved_since(const MotionBound& p, const MotionBound::Mark& p_mark, const MotionBound& q,
                    const MotionBound::Mark& q_mark) {
-  const Vec3 way =
-      (p.travel_ + p.since_.shift() - p_mark.way) - (q.travel_ + q.since_.shift() - q_mark.way);
-  return 1.000001 * (way.norm() + (p.drift_ + p.since_.off() - p_mark.drift) +
-                     (q.drift_ + q.since_.off() - q_mark.drift));
+  const Vec3 shift =
+      (p.travel_ + p.since_.shift() - p_mark.shift) - (q.travel_ + q.since_.shift() - q_mark.shift);
+  return 1.000001 * (shift.norm() + (p.past_deviation_ + p.since_.deviation() - p_mark.deviation) +
+                     (q.past_deviation_ + q.since_.deviation() - q_mark.deviation));
 }
 
 RigidMotionBound::RigidMotionBound(std::vector<Index> nodes, const std::vector<Vec3>& x)
@@ -109,7 +109,7 @@ RigidMotionBound::RigidMotionBound(std::vector<Index> nodes, const std::vector<V
   }
 }
 
-void RigidMotionBound::look(const Moves& moves, const MotionBound& whole, bool slow) {
+void RigidMotionBound::update(const Moves& moves, const MotionBound& whole, bool slow) {
   Extent box, step;
   for (const Index i : nodes_) {
     const double* a = moves.from[uz(i)].data();
@@ -137,26 +137,27 @@ void RigidMotionBound::look(const Moves& moves, const MotionBound& whole, bool s
   for (std::size_t i = 0; i < nodes_.size(); i += some) {
     a += (moves.to[uz(nodes_[i])] - centre) * (reference_[i] - reference_centre).transpose();
   }
-  way_.r = turned_towards(a, way_.r);
-  way_.t = centre - way_.r * reference_centre;
-  double off2 = 0.0;
+  motion_.r = turned_towards(a, motion_.r);
+  motion_.t = centre - motion_.r * reference_centre;
+  double deviation2 = 0.0;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
-    const double d2 = (moves.to[uz(nodes_[i])] - way_(reference_[i])).squaredNorm();
-    if (!(d2 <= off2)) off2 = d2;
+    const double d2 = (moves.to[uz(nodes_[i])] - motion_(reference_[i])).squaredNorm();
+    if (!(d2 <= deviation2)) deviation2 = d2;
   }
-  off_ = std::sqrt(off2);
+  deviation_ = std::sqrt(deviation2);
 }
 
 void RigidMotionBound::renew(const Moves& moves) {
-  travel_ = whole_way();
-  drift_ += off_;
+  travel_ = whole_motion();
+  past_deviation_ += deviation_;
   for (std::size_t i = 0; i < nodes_.size(); ++i) reference_[i] = moves.to[uz(nodes_[i])];
-  way_ = {};
-  off_ = 0.0;
+  motion_ = {};
+  deviation_ = 0.0;
 }
 
 RigidMotionBound::Mark RigidMotionBound::mark() const {
-  return {whole_way(), drift_ - off_, 0.5 * (box_.lo + box_.hi), 0.5 * (box_.hi - box_.lo).norm()};
+  return {whole_motion(), past_deviation_ - deviation_, 0.5 * (box_.lo + box_.hi),
+          0.5 * (box_.hi - box_.lo).norm()};
 }
 
 // With the rigid motions P and Q from the marks to now, a node of p is at P x_p and one of q at Q
@@ -166,15 +167,16 @@ RigidMotionBound::Mark RigidMotionBound::mark() const {
 // difference two are equal and one is 0.
 double changed_since(const RigidMotionBound& p, const RigidMotionBound::Mark& p_mark,
                      const RigidMotionBound& q, const RigidMotionBound::Mark& q_mark) {
-  const double off = (p.drift_ + p.off_ - p_mark.drift) + (q.drift_ + q.off_ - q_mark.drift);
-  if (&p == &q) return 1.000001 * off;
-  const Rigid p_way = p.whole_way().after(p_mark.way.inverse());
-  const Rigid q_way = q.whole_way().after(q_mark.way.inverse());
-  const double turn = (q_way.r - p_way.r).norm() / std::sqrt(2.0);
+  const double deviation = (p.past_deviation_ + p.deviation_ - p_mark.deviation) +
+                           (q.past_deviation_ + q.deviation_ - q_mark.deviation);
+  if (&p == &q) return 1.000001 * deviation;
+  const Rigid p_motion = p.whole_motion().after(p_mark.motion.inverse());
+  const Rigid q_motion = q.whole_motion().after(q_mark.motion.inverse());
+  const double turn = (q_motion.r - p_motion.r).norm() / std::sqrt(2.0);
   const auto at = [&](const RigidMotionBound::Mark& mark) {
-    return (q_way(mark.centre) - p_way(mark.centre)).norm() + turn * mark.radius;
+    return (q_motion(mark.centre) - p_motion(mark.centre)).norm() + turn * mark.radius;
   };
-  return 1.000001 * (std::min(at(p_mark), at(q_mark)) + off);
+  return 1.000001 * (std::min(at(p_mark), at(q_mark)) + deviation);
 }
 
 }  // namespace sinew

@@ -8,8 +8,8 @@
 namespace sinew {
 namespace {
 
-constexpr double opposed = 0.3;       // largest cosine between the normals of node and triangle
-constexpr double opposed_self = 0.0;  // the same within a body
+constexpr double max_cosine = 0.3;       // largest cosine between the normals of node and triangle
+constexpr double max_cosine_self = 0.0;  // the same within a body
 
 // The nearest point of a triangle.
 OnTriangle nearest_on(const Vec3& p, const std::vector<Vec3>& x, const Triangle& t) {
@@ -30,9 +30,9 @@ double relative_motion(Index p, const Triangle& t, const Moves& m) {
 
 NarrowPhase::NarrowPhase(const Model& model)
     : surface_(model.surface), rest_(model.rest_position), rim_(model.rest_position.size(), 0) {
-  if (model.touch) {
-    friction_ = model.touch->friction;
-    restitution_ = model.touch->restitution;
+  if (model.body_contact) {
+    friction_ = model.body_contact->friction;
+    restitution_ = model.body_contact->restitution;
   }
   triangle_owner_.resize(surface_.triangles.size());
   open_.resize(surface_.triangles.size());
@@ -115,20 +115,20 @@ bool NarrowPhase::adjoin(const Edge& a, const Edge& b) const {
 
 // Whether node and triangle are on two sides of a slit: at rest they face each other across a gap,
 // not through material.
-bool NarrowPhase::slit(Index slot, Index t, double apart) const {
+bool NarrowPhase::slit(Index slot, Index t, double at_rest) const {
   const Vec3& n = rest_plane_[uz(t)].normal;
   if (!(rest_normal_[uz(slot)].dot(n) < -0.5)) return false;
   const Vec3& a = rest_[uz(surface_.triangles[uz(t)][0])];
-  return n.dot(rest_[uz(surface_.nodes[uz(slot)])] - a) > 0.5 * apart;
+  return n.dot(rest_[uz(surface_.nodes[uz(slot)])] - a) > 0.5 * at_rest;
 }
 
-bool NarrowPhase::node_apart(Index slot, Index t, double distance) const {
-  const double apart = rest_distance(surface_.nodes[uz(slot)], surface_.triangles[uz(t)]);
-  return distance >= self_share * apart && !slit(slot, t, apart);
+bool NarrowPhase::node_too_far(Index slot, Index t, double distance) const {
+  const double at_rest = rest_distance(surface_.nodes[uz(slot)], surface_.triangles[uz(t)]);
+  return distance >= self_share * at_rest && !slit(slot, t, at_rest);
 }
 
-double NarrowPhase::calm_motion(Index a, Index b) const {
-  return calm_share * std::min(smallest_size_[uz(a)], smallest_size_[uz(b)]);
+double NarrowPhase::ccd_motion(Index a, Index b) const {
+  return ccd_share * std::min(smallest_size_[uz(a)], smallest_size_[uz(b)]);
 }
 
 // Whether a node and a triangle of one body that are near each other have come together from
@@ -138,8 +138,9 @@ bool NarrowPhase::self_pair_counts(Index slot, Index t, const OnTriangle& on, do
   const Index node = surface_.nodes[uz(slot)];
   const Triangle& tri = surface_.triangles[uz(t)];
   if (adjoin(slot, tri)) return false;
-  const double apart = rest_distance(node, tri);
-  if (!(std::sqrt(on.distance2) < self_share * apart)) return side < 0.0 && slit(slot, t, apart);
+  const double at_rest = rest_distance(node, tri);
+  if (!(std::sqrt(on.distance2) < self_share * at_rest))
+    return side < 0.0 && slit(slot, t, at_rest);
   if (side >= 0.0) return true;
   // At rest the node is behind the triangle, with material in between: it counts only if it comes
   // from the front.
@@ -147,14 +148,14 @@ bool NarrowPhase::self_pair_counts(Index slot, Index t, const OnTriangle& on, do
   const double behind = n.dot(rest_[uz(node)] - rest_[uz(tri[0])]);
   if (!(behind < 0.0 && rest_normal_[uz(slot)].dot(n) < 0.0)) return true;
   return plane_of(from, tri).normal.dot(from[uz(node)] - from[uz(tri[0])]) >
-         -0.2 * self_share * apart;
+         -0.2 * self_share * at_rest;
 }
 
 // Keeps the nearer of two triangles. If the nearest point is common to both (an edge or a corner),
 // it keeps the triangle whose plane is farther from the node: the side of that plane is the node's
 // side of the surface. The side of the other plane may be wrong (Baerentzen and Aanaes 2005 use a
 // mean of the planes for this).
-void NarrowPhase::Near::take(const Near& other) {
+void NarrowPhase::Near::keep_nearer(const Near& other) {
   constexpr double same = 1e-7;
   if (triangle >= 0) {
     if (other.on.distance2 > on.distance2 * (1.0 + same) + 1e-30) return;
@@ -177,7 +178,7 @@ NarrowPhase::Nearest NarrowPhase::nearest(Index slot, bool self, const NearTrian
   double length = 0.0;
   bool known = false;
   Nearest result;
-  const auto take = [&](Index t, const Plane& plane, const OnTriangle& on) {
+  const auto consider = [&](Index t, const Plane& plane, const OnTriangle& on) {
     Near near;
     near.triangle = t;
     near.on = on;
@@ -193,8 +194,9 @@ NarrowPhase::Nearest NarrowPhase::nearest(Index slot, bool self, const NearTrian
       length = normal.norm();
       known = true;
     }
-    if (!self) result.any.take(near);
-    if (normal.dot(near.plane) < (self ? opposed_self : opposed) * length) result.fit.take(near);
+    if (!self) result.any.keep_nearer(near);
+    if (normal.dot(near.plane) < (self ? max_cosine_self : max_cosine) * length)
+      result.fit.keep_nearer(near);
   };
   const std::size_t count = triangles.triangle.size();
   for (std::size_t k = 0; k < count; ++k) {
@@ -229,7 +231,7 @@ NarrowPhase::Nearest NarrowPhase::nearest(Index slot, bool self, const NearTrian
         on.weight = {1.0 - wb - wc, wb, wc};
         on.point = a + wb * ab + wc * ac;
         on.distance2 = side2;
-        take(t, plane, on);
+        consider(t, plane, on);
         continue;
       }
       // Lower bound: the distance from the plane and from the line of an edge that the node is
@@ -241,7 +243,7 @@ NarrowPhase::Nearest NarrowPhase::nearest(Index slot, bool self, const NearTrian
       if (beyond(a_area, c - b) || beyond(b_area, ac) || beyond(c_area, ab)) continue;
     }
     const OnTriangle on = nearest_on(p, x, tri);
-    if (on.distance2 <= range * range) take(t, plane, on);
+    if (on.distance2 <= range * range) consider(t, plane, on);
   }
   if (self) result.any = result.fit;
   return result;
@@ -265,16 +267,16 @@ bool NarrowPhase::node_contact_of(Index slot, const Near& near, double range, co
   return true;
 }
 
-NodeTouch NarrowPhase::node_touches(Index slot, Index owner, const NearTriangles& triangles,
-                                    std::span<const Plane> planes, bool calm, const Moves& moves,
-                                    Contact& c) const {
+NodeProximity NarrowPhase::node_contact(Index slot, Index owner, const NearTriangles& triangles,
+                                        std::span<const Plane> planes, bool skip_ccd,
+                                        const Moves& moves, Contact& c) const {
   const Index node = surface_.nodes[uz(slot)];
   const bool self = surface_.owner_nodes[uz(owner)].contains(slot);
   const double range = node_range(slot, owner, moves.reach);
   const auto at_end = [&](Index t) -> const Plane& { return planes[uz(t)]; };
   const Nearest end = nearest(slot, self, triangles, at_end, moves.to, moves.from, range);
-  const NodeTouch other = end.any.triangle < 0 ? NodeTouch::none : NodeTouch::near;
-  if (calm && end.fit.triangle < 0) return other;
+  const NodeProximity other = end.any.triangle < 0 ? NodeProximity::none : NodeProximity::near;
+  if (skip_ccd && end.fit.triangle < 0) return other;
 
   c.count = 4;
   c.friction = friction_;
@@ -287,9 +289,9 @@ NodeTouch NarrowPhase::node_touches(Index slot, Index owner, const NearTriangles
   Index hit_triangle = -1;
   const auto fast = [&](Index t) {
     return relative_motion(node, surface_.triangles[uz(t)], moves) >
-           calm_share * std::min(surface_.node_size[uz(slot)], surface_.triangle_size[uz(t)]);
+           ccd_share * std::min(surface_.node_size[uz(slot)], surface_.triangle_size[uz(t)]);
   };
-  if (!calm) {
+  if (!skip_ccd) {
     const auto at_start = [&](Index t) { return plane_of(moves.from, surface_.triangles[uz(t)]); };
     const Nearest start = nearest(slot, self, triangles, at_start, moves.from, moves.from, range);
     if (start.any.inside && start.fit.inside && fast(start.fit.triangle) &&
@@ -303,8 +305,8 @@ NodeTouch NarrowPhase::node_touches(Index slot, Index owner, const NearTriangles
         if (self && (adjoin(slot, tri) || rest_distance(node, tri) == 0.0)) continue;
         const TimeOfImpact m =
             impact_of_node(motion_of(node, tri[0], tri[1], tri[2], moves.from, moves.to));
-        if (!m.met ||
-            (hit.met && (hit.moment < m.moment || (hit.moment == m.moment && hit_triangle < t)))) {
+        if (!m.found ||
+            (hit.found && (hit.time < m.time || (hit.time == m.time && hit_triangle < t)))) {
           continue;
         }
         hit = m;
@@ -323,26 +325,26 @@ NodeTouch NarrowPhase::node_touches(Index slot, Index owner, const NearTriangles
     c.id = {ContactKind::node_triangle, owner, slot, t};
     return c.gap < moves.reach || (c.gap <= 0.0 && moves.reach == 0.0);
   };
-  if (hit.met && !(deep && hit.normal.dot(end.fit.plane) > 0.5)) {
+  if (hit.found && !(deep && hit.normal.dot(end.fit.plane) > 0.5)) {
     const Triangle& tri = surface_.triangles[uz(hit_triangle)];
     for (std::size_t k = 0; k < 3; ++k) {
       c.node[k + 1] = tri[k];
       c.weight[k + 1] = -hit.weight[k];
     }
     c.normal = hit.normal;
-    c.moment = hit.moment;
-    if (finish(hit_triangle)) return NodeTouch::touches;
+    c.time_of_impact = hit.time;
+    if (finish(hit_triangle)) return NodeProximity::contact;
   }
   if (!(deep || close)) return other;
   if (!node_contact_of(slot, end.fit, range, moves, c)) return other;
-  if (hit.met) {
-    c.moment = hit.moment;
+  if (hit.found) {
+    c.time_of_impact = hit.time;
   } else {  // the gap is taken to change linearly
     const double before = contact_gap(c, moves.from);
     const double after = contact_gap(c, moves.to);
-    c.moment = before <= 0.0 ? 0.0 : (after < 0.0 ? before / (before - after) : 1.0);
+    c.time_of_impact = before <= 0.0 ? 0.0 : (after < 0.0 ? before / (before - after) : 1.0);
   }
-  return finish(end.fit.triangle) ? NodeTouch::touches : other;
+  return finish(end.fit.triangle) ? NodeProximity::contact : other;
 }
 
 }  // namespace sinew

@@ -32,7 +32,7 @@ inline Plane plane_of(const std::vector<Vec3>& x, const Triangle& t) {
   return {length > 0.0 ? Vec3(n / length) : Vec3(Vec3::Zero()), length};
 }
 
-// The triangles that a node may touch.
+// The triangles that a node may be in contact with.
 struct NearTriangles {
   std::span<const Index> triangle;
   // Lower bounds of their distances from the node when the list was made [m], ascending; empty:
@@ -42,16 +42,16 @@ struct NearTriangles {
 };
 
 // near: no contact, but within node_range at the end of the step.
-enum class NodeTouch { none, near, touches };
+enum class NodeProximity { none, near, contact };
 
 class NarrowPhase {
  public:
   // depth_share: the largest depth of a node inside a surface that is still resolved, as a share of
-  // the local size (size of the triangles). calm_share: the largest relative motion of a pair in a
+  // the local size (size of the triangles). ccd_share: the largest relative motion of a pair in a
   // step that needs no CCD, as a share of the same size. self_share: two places of one body touch
   // only below this share of their rest distance.
   static constexpr double depth_share = 0.35;
-  static constexpr double calm_share = 0.15;
+  static constexpr double ccd_share = 0.15;
   static constexpr double self_share = 0.25;
   // Bends of edges [rad]. A sharp edge (bend above `sharp`, within one body above `sharp_to_self`)
   // can touch all edges with a bend above `concave`. Of two edges that touch, one is sharp.
@@ -72,13 +72,15 @@ class NarrowPhase {
   // The contact of a node with an owner's surface. `triangles` holds at least the triangles within
   // node_range at either end of the step, and those that the node may hit during the step. The node
   // may belong to that owner. `planes` (triangles) holds the planes of these triangles and of those
-  // around the node, at the end of the step. `calm`: no pair of them moves far enough to need CCD.
-  NodeTouch node_touches(Index node_slot, Index owner, const NearTriangles& triangles,
-                         std::span<const Plane> planes, bool calm, const Moves& moves,
-                         Contact& contact) const;
+  // around the node, at the end of the step. `skip_ccd`: no pair of them moves far enough to need
+  // CCD.
+  NodeProximity node_contact(Index node_slot, Index owner, const NearTriangles& triangles,
+                             std::span<const Plane> planes, bool skip_ccd, const Moves& moves,
+                             Contact& contact) const;
 
-  // The contact of edge a with edge b, which is touched. Returns false if there is none.
-  bool edges_touch(Index a, Index b, bool calm, const Moves& moves, Contact& contact) const;
+  // The contact of edge a with edge b, whose owner becomes the contact's. Returns false if there is
+  // none.
+  bool edge_contact(Index a, Index b, bool skip_ccd, const Moves& moves, Contact& contact) const;
 
   // Neighbours on a surface: the triangle is around the node or around one of its neighbours; the
   // edges share a node or have nodes that are neighbours. Neighbours never touch: they are always
@@ -92,20 +94,21 @@ class NarrowPhase {
         .subspan(begin, uz(neighbour_start_[uz(node_slot) + 1]) - begin);
   }
   Index slot_of(Index node) const { return slot_of_[uz(node)]; }  // -1: not on a surface
-  // Whether an edge can touch any other edge; at least one edge of a pair must be sharp.
-  bool may_meet(Index edge) const {
+  // Whether an edge can be in contact with any other edge; at least one edge of a pair must be
+  // sharp.
+  bool may_contact(Index edge) const {
     return surface_.edge_bend[uz(edge)] > concave && surface_.edge_triangles[uz(edge)][1] >= 0;
   }
 
   // Whether a node and a triangle, or two edges, of one body cannot touch at this distance [m] or a
   // larger one.
-  bool node_apart(Index node_slot, Index triangle, double distance) const;
-  bool edges_apart(Index a, Index b, double distance) const;
+  bool node_too_far(Index node_slot, Index triangle, double distance) const;
+  bool edges_too_far(Index a, Index b, double distance) const;
 
   // The relative motion [m] up to which pairs of two owners need no CCD.
-  double calm_motion(Index a, Index b) const;
+  double ccd_motion(Index a, Index b) const;
 
-  const TouchSurface& surface() const { return surface_; }
+  const ContactSurface& surface() const { return surface_; }
   // The distance of a node from a triangle, or of two edges, in the rest shape [m].
   double rest_distance(Index node, const Triangle& t) const;
   double rest_distance(const Edge& a, const Edge& b) const;
@@ -118,7 +121,7 @@ class NarrowPhase {
     Vec3 plane = Vec3::Zero();  // its normal, a unit vector
     bool inside = false;
     double distance() const { return std::sqrt(on.distance2); }
-    void take(const Near& other);
+    void keep_nearer(const Near& other);
   };
   // The nearest triangle of a set, and the nearest one that can be in contact with the node.
   struct Nearest {
@@ -128,7 +131,7 @@ class NarrowPhase {
   template <typename PlaneOf>
   Nearest nearest(Index slot, bool self, const NearTriangles& triangles, const PlaneOf& plane_of,
                   const std::vector<Vec3>& x, const std::vector<Vec3>& from, double range) const;
-  bool slit(Index slot, Index t, double apart) const;
+  bool slit(Index slot, Index t, double at_rest) const;
   bool self_pair_counts(Index slot, Index t, const OnTriangle& on, double side,
                         const std::vector<Vec3>& from) const;
   bool on_boundary(Index t, const OnTriangle& on) const;
@@ -140,7 +143,7 @@ class NarrowPhase {
   double edge_size(Index edge) const;
   bool supports(Index edge, const Vec3& n, const Moves& moves, double t, double slack) const;
 
-  TouchSurface surface_;
+  ContactSurface surface_;
   std::vector<Index> neighbour_start_;     // offsets into neighbour_ (node slots + 1)
   std::vector<Index> neighbour_;           // nodes around each node, ascending
   std::vector<Index> slot_of_;             // -1: not on a surface (nodes of the model)

@@ -30,17 +30,17 @@ double NarrowPhase::rest_distance(const Edge& a, const Edge& b) const {
   return segments_distance(rest_[uz(a[0])], rest_[uz(a[1])], rest_[uz(b[0])], rest_[uz(b[1])]);
 }
 
-bool NarrowPhase::edges_apart(Index a, Index b, double distance) const {
+bool NarrowPhase::edges_too_far(Index a, Index b, double distance) const {
   return distance >= self_share * rest_distance(surface_.edges[uz(a)], surface_.edges[uz(b)]);
 }
 
 // Whether the surface around an edge is behind the plane through the edge with normal n, at a time
 // of the step: then the edge can be touched with the normal n. `slack`: the sine of the angle by
 // which the surface may rise above the plane.
-bool NarrowPhase::supports(Index edge, const Vec3& n, const Moves& m, double moment,
+bool NarrowPhase::supports(Index edge, const Vec3& n, const Moves& m, double time,
                            double slack) const {
   const Edge& e = surface_.edges[uz(edge)];
-  const auto at = [&](Index i) { return between(m.from[uz(i)], m.to[uz(i)], moment); };
+  const auto at = [&](Index i) { return between(m.from[uz(i)], m.to[uz(i)], time); };
   const Vec3 a = at(e[0]);
   const Vec3 along = unit(at(e[1]) - a);
   Vec3 out = Vec3::Zero();
@@ -59,12 +59,13 @@ bool NarrowPhase::supports(Index edge, const Vec3& n, const Moves& m, double mom
   return n.dot(out) > 0.0;
 }
 
-bool NarrowPhase::edges_touch(Index ea, Index eb, bool calm, const Moves& moves, Contact& c) const {
+bool NarrowPhase::edge_contact(Index ea, Index eb, bool skip_ccd, const Moves& moves,
+                               Contact& c) const {
   const Edge &a = surface_.edges[uz(ea)], &b = surface_.edges[uz(eb)];
   const auto& x = moves.to;
   const OnLines on = nearest_on_lines(x[uz(a[0])], x[uz(a[1])], x[uz(b[0])], x[uz(b[1])]);
   const bool over = !on.parallel && on.s > 0.0 && on.s < 1.0 && on.t > 0.0 && on.t < 1.0;
-  if (calm && !over) return false;
+  if (skip_ccd && !over) return false;
   const double size = std::min(edge_size(ea), edge_size(eb));
   const Index owner = triangle_owner_[uz(surface_.edge_triangles[uz(eb)][0])];
   const bool self = triangle_owner_[uz(surface_.edge_triangles[uz(ea)][0])] == owner;
@@ -96,25 +97,25 @@ bool NarrowPhase::edges_touch(Index ea, Index eb, bool calm, const Moves& moves,
       if (c.gap < -to_end - end_share * size) continue;
       if (self && !(std::abs(c.gap) < self_share * rest_distance(a, b))) continue;
       const double before = contact_gap(c, moves.from);
-      c.moment = before <= 0.0 ? 0.0 : (c.gap < 0.0 ? before / (before - c.gap) : 1.0);
+      c.time_of_impact = before <= 0.0 ? 0.0 : (c.gap < 0.0 ? before / (before - c.gap) : 1.0);
       return true;
     }
   }
 
   // CCD during the step.
-  if (calm) return false;
+  if (skip_ccd) return false;
   const auto move = [&](Index i) -> Vec3 { return moves.to[uz(i)] - moves.from[uz(i)]; };
   double motion = 0.0;
   for (const Index i : a) {
     for (const Index j : b) motion = std::max(motion, (move(i) - move(j)).squaredNorm());
   }
-  if (!(motion > calm_share * calm_share * size * size)) return false;
+  if (!(motion > ccd_share * ccd_share * size * size)) return false;
   const TimeOfImpact hit = impact_of_edges(motion_of(a[0], a[1], b[0], b[1], moves.from, moves.to));
-  if (!hit.met || (self && rest_distance(a, b) == 0.0)) return false;
-  if (!supports(eb, hit.normal, moves, hit.moment, 0.25)) return false;
-  if (!supports(ea, -hit.normal, moves, hit.moment, 0.25)) return false;
+  if (!hit.found || (self && rest_distance(a, b) == 0.0)) return false;
+  if (!supports(eb, hit.normal, moves, hit.time, 0.25)) return false;
+  if (!supports(ea, -hit.normal, moves, hit.time, 0.25)) return false;
   set(hit.weight[0], hit.weight[1], hit.normal);
-  c.moment = hit.moment;
+  c.time_of_impact = hit.time;
   return c.gap < moves.reach || (c.gap <= 0.0 && moves.reach == 0.0);
 }
 

@@ -23,9 +23,9 @@ constexpr double stale_track = 0.02;
 
 }  // namespace
 
-NeighbourLists::NeighbourLists(const Model& model, const NarrowPhase& touching)
-    : narrow_phase_(touching) {
-  const TouchSurface& s = touching.surface();
+NeighbourLists::NeighbourLists(const Model& model, const NarrowPhase& narrow_phase)
+    : narrow_phase_(narrow_phase) {
+  const ContactSurface& s = narrow_phase.surface();
   const auto& x = model.rest_position;
   owners_.resize(uz(s.owner_count()));
   for (Index o = 0; o < s.owner_count(); ++o) {
@@ -38,17 +38,17 @@ NeighbourLists::NeighbourLists(const Model& model, const NarrowPhase& touching)
     const Range nodes = s.owner_nodes[uz(o)];
     owner.track = MotionBound({s.nodes.begin() + nodes.begin, s.nodes.begin() + nodes.end}, x);
     owner.parts.begin = part_count();
-    std::vector<SurfacePart> parts = parts_of(o, touching, x);
+    std::vector<SurfacePart> parts = parts_of(o, narrow_phase, x);
     std::move(parts.begin(), parts.end(), std::back_inserter(parts_));
     owner.parts.end = part_count();
   }
   finder_ = std::make_unique<NearFinder>(narrow_phase_, parts_);
   close_.resize(parts_.size());
-  const Touch touch = model.touch.value_or(Touch{false, false, 0.0, 0.0});
+  const BodyContact contact = model.body_contact.value_or(BodyContact{false, false, 0.0, 0.0});
   for (Index a = 0; a < s.owner_count(); ++a) {
     for (Index b = a; b < s.owner_count(); ++b) {
       const bool rigid = b >= s.body_count;
-      if (a >= s.body_count || !(a == b ? touch.self : rigid || touch.bodies)) continue;
+      if (a >= s.body_count || !(a == b ? contact.self : rigid || contact.bodies)) continue;
       if (owners_[uz(a)].parts.size() == 0 || owners_[uz(b)].parts.size() == 0) continue;
       NearPair& pair = pairs_.emplace_back();
       pair.a = a;
@@ -69,22 +69,23 @@ double NeighbourLists::skin_of(const NearPair& pair) const {
 }
 
 // Updates the tracks of the owner's parts to this step.
-void NeighbourLists::look(Owner& owner, const Moves& moves) {
-  if (std::exchange(owner.looked, true)) return;
-  const bool slow = apart(owner.track.step(), owner.track.step()) <= 0.1 * skin_share * owner.size;
+void NeighbourLists::update_tracks(Owner& owner, const Moves& moves) {
+  if (std::exchange(owner.updated, true)) return;
+  const bool slow = relative_displacement(owner.track.step(), owner.track.step()) <=
+                    0.1 * skin_share * owner.size;
   parallel_for(owner.parts.size(), [&](Index i) {
     SurfacePart& part = parts_[uz(owner.parts.begin + i)];
-    part.track.look(moves, owner.track, slow);
+    part.track.update(moves, owner.track, slow);
     part.fitted = false;
   });
-  if (owner.track.since().off() > stale_track * owner.size) owner.track.renew(moves);
+  if (owner.track.since().deviation() > stale_track * owner.size) owner.track.renew(moves);
 }
 
 // Finds the parts of the pair that are within range and skin of each other in this step. Reduces
 // `slack` to the smallest distance of the other parts beyond the range.
 void NeighbourLists::find_close(const NearPair& pair, double range, double skin, double& slack) {
   const Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
-  const double most = apart(a.track.step(), b.track.step());
+  const double most = relative_displacement(a.track.step(), b.track.step());
   const double limit = range + skin + most;
   part_boxes_.clear();
   for (const Owner* o : {&a, &b}) {
@@ -110,14 +111,14 @@ void NeighbourLists::find_close(const NearPair& pair, double range, double skin,
         continue;
       }
       // The swept box of the other part, relative to p; the nodes deviate from it by at most their
-      // off.
+      // deviation().
       const RigidMotionBound& other = parts_[uz(q)].track;
-      const Vec3 way = track.step().shift() - other.step().shift();
+      const Vec3 shift = track.step().shift() - other.step().shift();
       Box swept = other.end_box();
-      swept.lo += way.cwiseMin(Vec3::Zero());
-      swept.hi += way.cwiseMax(Vec3::Zero());
-      away = (box.lo - swept.hi).cwiseMax(swept.lo - box.hi).maxCoeff() - track.step().off() -
-             other.step().off();
+      swept.lo += shift.cwiseMin(Vec3::Zero());
+      swept.hi += shift.cwiseMax(Vec3::Zero());
+      away = (box.lo - swept.hi).cwiseMax(swept.lo - box.hi).maxCoeff() - track.step().deviation() -
+             other.step().deviation();
       if (away > range + skin) {
         slack = std::min(slack, away - range);
         continue;
@@ -145,10 +146,10 @@ double NeighbourLists::used_of(NearPart& near, double range, double skin, double
       used = std::max(used, skin - (close.gap - range));
       continue;
     }
-    const double way =
+    const double motion =
         changed_since(track, near.mark, parts_[uz(other->part)].track, other->mark) + most;
-    if (!(way <= skin)) return all;
-    near.before = std::max(near.before, way);
+    if (!(motion <= skin)) return all;
+    near.before = std::max(near.before, motion);
   }
   return std::max(used, near.before);
 }
@@ -159,7 +160,8 @@ double NeighbourLists::build(const std::vector<NearPart*>& stale, double skin, c
   const auto prepare = [&](Index p) {
     SurfacePart& part = parts_[uz(p)];
     if (part.fitted) return;
-    if (part.track.off() > stale_track * owners_[uz(part.owner)].size) part.track.renew(moves);
+    if (part.track.deviation() > stale_track * owners_[uz(part.owner)].size)
+      part.track.renew(moves);
     fit_boxes(part, narrow_phase_, moves.to);
   };
   for (const NearPart* near : stale) {
@@ -175,9 +177,9 @@ double NeighbourLists::build(const std::vector<NearPart*>& stale, double skin, c
     for (const Close& close : close_[uz(near.part)]) {
       const RigidMotionBound& other = parts_[uz(close.part)].track;
       near.others.push_back({close.part, other.mark()});
-      const double way = changed_since(track, near.mark, other, near.others.back().mark) +
-                         apart(track.step(), other.step()) + 1e-6 * skin;
-      near.before = std::max(near.before, way);
+      const double motion = changed_since(track, near.mark, other, near.others.back().mark) +
+                            relative_displacement(track.step(), other.step()) + 1e-6 * skin;
+      near.before = std::max(near.before, motion);
     }
     // If the motion in the step is longer than the skin, the lists are valid for this step only.
     near.known = near.before <= used_up * skin;
@@ -195,10 +197,10 @@ double NeighbourLists::build(const std::vector<NearPart*>& stale, double skin, c
 // Checks every part of the pair and rebuilds the lists that are not valid any more.
 void NeighbourLists::check(NearPair& pair, const Moves& moves) {
   Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
-  look(a, moves);
-  look(b, moves);
+  update_tracks(a, moves);
+  update_tracks(b, moves);
   const double range = range_of(pair, moves.reach), skin = skin_of(pair);
-  const double most = apart(a.track.step(), b.track.step()) + 1e-6 * skin;
+  const double most = relative_displacement(a.track.step(), b.track.step()) + 1e-6 * skin;
   pair.slack = std::numeric_limits<double>::infinity();
   find_close(pair, range, skin, pair.slack);
   if (pair.all.empty()) {
@@ -248,7 +250,7 @@ void NeighbourLists::check(NearPair& pair, const Moves& moves) {
 
 // Collects the parts that have a non-empty list, and their triangles.
 void NeighbourLists::collect(NearPair& pair) {
-  const TouchSurface& s = narrow_phase_.surface();
+  const ContactSurface& s = narrow_phase_.surface();
   marked_.resize(s.triangles.size(), 0);
   pair.parts.clear();
   pair.triangles.clear();
@@ -271,8 +273,8 @@ void NeighbourLists::collect(NearPair& pair) {
 
 const std::vector<const NearPair*>& NeighbourLists::update(const Moves& moves) {
   for (Owner& owner : owners_) {
-    owner.looked = false;
-    owner.track.look(moves);
+    owner.updated = false;
+    owner.track.update(moves);
   }
   near_.clear();
   for (NearPair& pair : pairs_) {
@@ -282,13 +284,15 @@ const std::vector<const NearPair*>& NeighbourLists::update(const Moves& moves) {
       continue;
     }
     // The bound covers both ends of the step.
-    double since = moved_since(a, pair.a_mark, b, pair.b_mark) + apart(a.step(), b.step());
+    double since =
+        moved_since(a, pair.a_mark, b, pair.b_mark) + relative_displacement(a.step(), b.step());
     if (!pair.checked || moves.reach > pair.reach || !(since <= pair.slack)) {
       check(pair, moves);
       since = 0.0;
     }
     for (NearPart& near : pair.all) near.moved = near.before + since;
-    pair.calm = apart(a.step(), b.step()) <= narrow_phase_.calm_motion(pair.a, pair.b);
+    pair.skip_ccd =
+        relative_displacement(a.step(), b.step()) <= narrow_phase_.ccd_motion(pair.a, pair.b);
     near_.push_back(&pair);
   }
   return near_;

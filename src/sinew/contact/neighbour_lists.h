@@ -18,7 +18,7 @@ struct NearPair {
   // The parts with a non-empty list: parts of a first, then, if a is not b, parts of b.
   std::vector<const NearPart*> parts;
   std::vector<Index> triangles;  // of their lists, and those around their nodes; ascending
-  bool calm = false;             // no pair moves far enough in this step to need CCD
+  bool skip_ccd = false;         // no pair moves far enough in this step to need CCD
 
   std::vector<NearPart> all;  // parts of a, then of b
   // The lists need no check until the owners have moved by `slack` relative to each other since the
@@ -31,11 +31,11 @@ struct NearPair {
 
 class NeighbourLists {
  public:
-  NeighbourLists(const Model& model, const NarrowPhase& touching);
+  NeighbourLists(const Model& model, const NarrowPhase& narrow_phase);
   ~NeighbourLists();
 
-  // The pairs of owners that may touch in this step. Their lists hold every node and triangle, and
-  // every two edges, that come within the range of NarrowPhase during the step.
+  // The pairs of owners that may be in contact in this step. Their lists hold every node and
+  // triangle, and every two edges, that come within the range of NarrowPhase during the step.
   const std::vector<const NearPair*>& update(const Moves& moves);
 
   // The number of lists built so far, one per part, for tests and measurements.
@@ -46,9 +46,9 @@ class NeighbourLists {
   struct Owner {
     Range parts;
     MotionBound track;
-    double size = 0.0;    // mean size of its triangles [m]
-    double range = 0.0;   // the largest range of its nodes and edges without the reach [m]
-    bool looked = false;  // the tracks of its parts are those of this step
+    double size = 0.0;     // mean size of its triangles [m]
+    double range = 0.0;    // the largest range of its nodes and edges without the reach [m]
+    bool updated = false;  // the tracks of its parts are those of this step
   };
   // A part of b close to a part of a, and the lower bound of their distance during the step [m].
   struct Close {
@@ -57,7 +57,7 @@ class NeighbourLists {
   };
   double range_of(const NearPair& pair, double reach) const;
   double skin_of(const NearPair& pair) const;
-  void look(Owner& owner, const Moves& moves);
+  void update_tracks(Owner& owner, const Moves& moves);
   void find_close(const NearPair& pair, double range, double skin, double& slack);
   double used_of(NearPart& near, double range, double skin, double most, double reach) const;
   void check(NearPair& pair, const Moves& moves);
@@ -67,7 +67,7 @@ class NeighbourLists {
   const NarrowPhase& narrow_phase_;
   std::vector<SurfacePart> parts_;  // owner by owner
   std::vector<Owner> owners_;
-  std::vector<NearPair> pairs_;  // all that may touch, by a, then b
+  std::vector<NearPair> pairs_;  // all that may be in contact, by a, then b
   std::vector<const NearPair*> near_;
   std::unique_ptr<NearFinder> finder_;
   std::vector<std::vector<Close>> close_;  // scratch (parts): of the current pair, ascending

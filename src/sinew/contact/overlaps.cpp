@@ -28,7 +28,7 @@ BoxTree tree_of(const std::vector<Box>& boxes) {
   return tree;
 }
 
-double distance_to_surface(const Vec3& p, const std::vector<Vec3>& x, const TouchSurface& s,
+double distance_to_surface(const Vec3& p, const std::vector<Vec3>& x, const ContactSurface& s,
                            Range triangles) {
   double least2 = std::numeric_limits<double>::infinity();
   for (Index t = triangles.begin; t < triangles.end; ++t) {
@@ -43,7 +43,7 @@ double distance_to_surface(const Vec3& p, const std::vector<Vec3>& x, const Touc
 
 std::vector<Overlap> find_overlaps(const Model& model, const std::vector<Vec3>& x,
                                    double tolerance) {
-  const TouchSurface& s = model.surface;
+  const ContactSurface& s = model.surface;
   std::vector<Overlap> overlaps;
   if (s.empty()) return overlaps;
   std::vector<BoxTree> trees;

@@ -24,7 +24,7 @@ struct Sweep {
                                            rod.b0 + s * (rod.b1 - rod.b0), corners(s));
   }
   // An upper bound of the decrease of the distance in the step.
-  double way() const {
+  double approach_bound() const {
     const Vec3 mean = 0.5 * (rod.a1 - rod.a0 + rod.b1 - rod.b0);
     double of_triangle = 0.0;
     for (std::size_t i = 0; i < 3; ++i)
@@ -33,12 +33,12 @@ struct Sweep {
   }
   // The share of the step after which the distance first equals the radius, by conservative
   // advancement (Mirtich 1996): it never steps past the hit.
-  std::optional<double> meets(double way) const {
+  std::optional<double> time_of_impact(double approach) const {
     double s = 0.0;
     for (int i = 0; i < 200; ++i) {
       const double space = nearest(s).distance - rod.radius;
       if (space <= 1e-6 * rod.radius) return s;
-      s += space / way;
+      s += space / approach;
       if (s > 1.0) return {};
     }
     return s;
@@ -67,28 +67,28 @@ struct Hit {
 std::optional<Hit> hit_of(const Sweep& sweep, double reach) {
   const double radius = sweep.rod.radius;
   const NearestPair last = sweep.nearest(1.0);
-  const double way = sweep.way();
-  if (last.distance - radius >= reach && last.distance - radius > way) return {};
+  const double approach = sweep.approach_bound();
+  if (last.distance - radius >= reach && last.distance - radius > approach) return {};
   const NearestPair first = sweep.nearest(0.0);
   const Vec3 out0 = outward_of(sweep.x0);
   const Vec3 out1 = outward_of(sweep.x1);
   const Vec3 n0 = pair_normal(first, out0);
   const Vec3 n1 = pair_normal(last, out1);
-  const bool may_cross = way >= first.distance;
+  const bool may_cross = approach >= first.distance;
   const bool same_side = last.distance > 0.0 && n0.dot(n1) > 0.0;
   if (!may_cross || same_side) {
     if (last.distance - radius >= reach) return {};
     return Hit{last, n1, -n1.dot(out1), false};
   }
-  const auto moment = sweep.meets(way);
-  if (!moment) {
+  const auto toi = sweep.time_of_impact(approach);
+  if (!toi) {
     if (last.distance - radius >= reach) return {};
     return Hit{last, n1, -n1.dot(out1), false};
   }
-  const NearestPair met = sweep.nearest(*moment);
-  const Vec3 out = outward_of(sweep.corners(*moment));
-  const Vec3 n = pair_normal(met, out);
-  return Hit{met, n, -n.dot(out), true};
+  const NearestPair pair = sweep.nearest(*toi);
+  const Vec3 out = outward_of(sweep.corners(*toi));
+  const Vec3 n = pair_normal(pair, out);
+  return Hit{pair, n, -n.dot(out), true};
 }
 
 Contact contact_of(const Hit& hit, const MovingRod& rod, const Triangle& t,

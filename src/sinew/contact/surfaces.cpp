@@ -10,21 +10,22 @@ namespace sinew {
 
 struct SurfaceContacts::Search {
   explicit Search(const Model& model)
-      : touching(model),
-        lists(model, touching),
+      : narrow_phase(model),
+        lists(model, narrow_phase),
         planes(model.surface.triangles.size()),
-        held(model.surface.nodes.size(), -1) {}
+        near_pair(model.surface.nodes.size(), -1) {}
 
-  void add_nodes(const NearPart& near, bool calm, Index pair_number, const Moves& moves,
+  void add_nodes(const NearPart& near, bool skip_ccd, Index pair_number, const Moves& moves,
                  std::vector<Contact>& out);
-  void add_edges(const NearPart& near, bool self, bool calm, Index pair_number, const Moves& moves,
-                 std::vector<Contact>& out) const;
-  bool carried(Index edge, Index pair_number) const;
+  void add_edges(const NearPart& near, bool self, bool skip_ccd, Index pair_number,
+                 const Moves& moves, std::vector<Contact>& out) const;
+  bool ends_near(Index edge, Index pair_number) const;
 
-  NarrowPhase touching;
+  NarrowPhase narrow_phase;
   NeighbourLists lists;
   std::vector<Plane> planes;  // at the end of the step (triangles); valid for the current pair
-  std::vector<Index> held;  // the last pair in which the node is near the other owner (node slots)
+  std::vector<Index>
+      near_pair;  // the last pair in which the node is near the other owner (node slots)
 };
 
 namespace {
@@ -55,47 +56,47 @@ double least_distance(const NearPart& near, const NeighbourList& list, Index k) 
 
 }  // namespace
 
-void SurfaceContacts::Search::add_nodes(const NearPart& near, bool calm, Index pair_number,
+void SurfaceContacts::Search::add_nodes(const NearPart& near, bool skip_ccd, Index pair_number,
                                         const Moves& moves, std::vector<Contact>& out) {
   const NeighbourList& list = near.nodes;
   for (Index k = 0; k < list.count(); ++k) {
     const Index slot = list.key[uz(k)];
-    if (least_distance(near, list, k) > touching.node_range(slot, near.owner, moves.reach))
+    if (least_distance(near, list, k) > narrow_phase.node_range(slot, near.owner, moves.reach))
       continue;
-    const NodeTouch touch =
-        touching.node_touches(slot, near.owner, {list.of(k), list.far_of(k), near.moved}, planes,
-                              calm, moves, out.emplace_back());
-    if (touch != NodeTouch::touches) out.pop_back();
-    if (touch != NodeTouch::none) held[uz(slot)] = pair_number;
+    const NodeProximity proximity =
+        narrow_phase.node_contact(slot, near.owner, {list.of(k), list.far_of(k), near.moved},
+                                  planes, skip_ccd, moves, out.emplace_back());
+    if (proximity != NodeProximity::contact) out.pop_back();
+    if (proximity != NodeProximity::none) near_pair[uz(slot)] = pair_number;
   }
 }
 
 // Whether both end nodes of an edge are near the other owner: then a flat edge adds no contact.
-bool SurfaceContacts::Search::carried(Index edge, Index pair_number) const {
-  const Edge& e = touching.surface().edges[uz(edge)];
-  return held[uz(touching.slot_of(e[0]))] == pair_number &&
-         held[uz(touching.slot_of(e[1]))] == pair_number;
+bool SurfaceContacts::Search::ends_near(Index edge, Index pair_number) const {
+  const Edge& e = narrow_phase.surface().edges[uz(edge)];
+  return near_pair[uz(narrow_phase.slot_of(e[0]))] == pair_number &&
+         near_pair[uz(narrow_phase.slot_of(e[1]))] == pair_number;
 }
 
-void SurfaceContacts::Search::add_edges(const NearPart& near, bool self, bool calm,
+void SurfaceContacts::Search::add_edges(const NearPart& near, bool self, bool skip_ccd,
                                         Index pair_number, const Moves& moves,
                                         std::vector<Contact>& out) const {
   const NeighbourList& list = near.edges;
   for (Index k = 0; k < list.count(); ++k) {
     const Index a = list.key[uz(k)];
-    const double range = touching.edge_range(a, near.owner, moves.reach);
+    const double range = narrow_phase.edge_range(a, near.owner, moves.reach);
     if (least_distance(near, list, k) > range) continue;
-    const bool a_sharp = touching.is_sharp(a, self);
-    const bool a_carried = carried(a, pair_number);
+    const bool a_sharp = narrow_phase.is_sharp(a, self);
+    const bool a_ends_near = ends_near(a, pair_number);
     const auto others = list.of(k);
     const auto far = list.far_of(k);
     for (std::size_t i = 0; i < others.size(); ++i) {
       const Index b = others[i];
       if (static_cast<double>(far[i]) - near.moved > range) break;
-      const bool b_sharp = touching.is_sharp(b, self);
-      if (!b_sharp && a_carried) continue;
-      if (!a_sharp && carried(b, pair_number)) continue;
-      if (!touching.edges_touch(a, b, calm, moves, out.emplace_back())) out.pop_back();
+      const bool b_sharp = narrow_phase.is_sharp(b, self);
+      if (!b_sharp && a_ends_near) continue;
+      if (!a_sharp && ends_near(b, pair_number)) continue;
+      if (!narrow_phase.edge_contact(a, b, skip_ccd, moves, out.emplace_back())) out.pop_back();
     }
   }
 }
@@ -113,18 +114,18 @@ void SurfaceContacts::find(const std::vector<Vec3>& from, const std::vector<Vec3
                            std::vector<Contact>& out) {
   out.clear();
   const Moves moves = {from, to, reach};
-  std::fill(search_->held.begin(), search_->held.end(), -1);
+  std::fill(search_->near_pair.begin(), search_->near_pair.end(), -1);
   Index number = 0;
   for (const NearPair* pair : search_->lists.update(moves)) {
     parallel_for(static_cast<Index>(pair->triangles.size()), [&](Index i) {
       const Index t = pair->triangles[uz(i)];
-      search_->planes[uz(t)] = plane_of(to, search_->touching.surface().triangles[uz(t)]);
+      search_->planes[uz(t)] = plane_of(to, search_->narrow_phase.surface().triangles[uz(t)]);
     });
     add_in_order(pair->parts, out, [&](const NearPart& near, std::vector<Contact>& found) {
-      search_->add_nodes(near, pair->calm, number, moves, found);
+      search_->add_nodes(near, pair->skip_ccd, number, moves, found);
     });
     add_in_order(pair->parts, out, [&](const NearPart& near, std::vector<Contact>& found) {
-      search_->add_edges(near, pair->a == pair->b, pair->calm, number, moves, found);
+      search_->add_edges(near, pair->a == pair->b, pair->skip_ccd, number, moves, found);
     });
     ++number;
   }

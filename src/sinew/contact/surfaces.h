@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "sinew/contact/contact.h"
-#include "sinew/contact/touch_surface.h"
+#include "sinew/contact/contact_surface.h"
 #include "sinew/model/model.h"
 
 namespace sinew {
@@ -22,7 +22,7 @@ class SurfaceContacts {
   SurfaceContacts& operator=(SurfaceContacts&&) noexcept;
 
   // The contacts of a step in which the nodes move from `from` to `to` [m] (nodes): pairs whose gap
-  // at the end is below `reach` [m] >= 0, or inside (reach 0: touching or inside), and pairs that
+  // at the end is below `reach` [m] >= 0, or inside (reach 0: in contact or inside), and pairs that
   // hit each other during the step. Sorted by id. Pairs that are too deep inside each other at both
   // ends to tell the side are ignored: find_overlaps() reports them.
   void find(const std::vector<Vec3>& from, const std::vector<Vec3>& to, double reach,

@@ -88,8 +88,8 @@ inline NodeAndTriangle motion_of(Index p, Index a, Index b, Index c, const std::
 
 // The first time at which p passes through the triangle from its front to its back.
 struct TimeOfImpact {
-  bool met = false;
-  double moment = 0.0;                // [-] in [0, 1]
+  bool found = false;
+  double time = 0.0;                  // [-] in [0, 1]
   std::array<double, 3> weight = {};  // of the triangle's corners, or s (0) and t (1) of edges
   Vec3 normal = Vec3::Zero();         // [-] unit, at that time
 };
@@ -103,7 +103,7 @@ inline TimeOfImpact impact_of_node(const NodeAndTriangle& m) {
   const Vec3 v = m.b0 - m.a0, dv = m.b1 - m.a1 - v;
   const Vec3 w = m.c0 - m.a0, dw = m.c1 - m.a1 - w;
   const Cubic f = moving_determinant(u, du, v, dv, w, dw);
-  TimeOfImpact meeting;
+  TimeOfImpact impact;
   const Roots roots = crossings(f);
   for (int i = 0; i < roots.count; ++i) {
     const double t = roots.t[static_cast<std::size_t>(i)];
@@ -118,13 +118,13 @@ inline TimeOfImpact impact_of_node(const NodeAndTriangle& m) {
     const double wc = vt.cross(ut).dot(n) / n2;
     constexpr double slack = -1e-6;  // no gap between triangles that share an edge
     if (!(wb >= slack && wc >= slack && 1.0 - wb - wc >= slack)) continue;
-    meeting.met = true;
-    meeting.moment = t;
-    meeting.weight = {1.0 - wb - wc, wb, wc};
-    meeting.normal = n / std::sqrt(n2);
-    return meeting;
+    impact.found = true;
+    impact.time = t;
+    impact.weight = {1.0 - wb - wc, wb, wc};
+    impact.normal = n / std::sqrt(n2);
+    return impact;
   }
-  return meeting;
+  return impact;
 }
 
 // The first time at which edge a b passes through edge c d. The normal points to the side that a b
@@ -136,7 +136,7 @@ inline TimeOfImpact impact_of_edges(const NodeAndTriangle& m) {
   const Vec3 u = b0 - a0, du = b1 - a1 - u;
   const Vec3 v = d0 - c0, dv = d1 - c1 - v;
   const Cubic f = moving_determinant(r, dr, u, du, v, dv);
-  TimeOfImpact meeting;
+  TimeOfImpact impact;
   const Roots roots = crossings(f);
   for (int i = 0; i < roots.count; ++i) {
     const double t = roots.t[static_cast<std::size_t>(i)];
@@ -150,14 +150,14 @@ inline TimeOfImpact impact_of_edges(const NodeAndTriangle& m) {
     if (!(on_u >= slack && on_u <= 1.0 - slack && on_v >= slack && on_v <= 1.0 - slack)) continue;
     Vec3 n = ut.cross(vt).normalized();
     const double slope = f.c[1] + t * (2.0 * f.c[2] + 3.0 * f.c[3] * t);
-    meeting.met = true;
-    meeting.moment = t;
-    meeting.weight = {on_u, on_v, 0.0};
+    impact.found = true;
+    impact.time = t;
+    impact.weight = {on_u, on_v, 0.0};
     // det = r . (u x v). If it falls to zero, r is on the side of n.
-    meeting.normal = slope > 0.0 ? Vec3(-n) : n;
-    return meeting;
+    impact.normal = slope > 0.0 ? Vec3(-n) : n;
+    return impact;
   }
-  return meeting;
+  return impact;
 }
 
 }  // namespace sinew

@@ -14,6 +14,7 @@
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/coloring.h"
 #include "sinew/mesh/edges.h"
+#include "sinew/model/mean_edge.h"
 
 namespace sinew {
 namespace {
@@ -25,9 +26,10 @@ double tet_stiffness(const Material& material, double volume, double length, dou
     case Law::uniform:
       return material.spring_stiffness / sharing;
     case Law::lloyd:
-      return material.spring_scale *
-             lloyd_stiffness(material.length == LloydLength::tet ? regular_edge(volume) : length,
-                             material.young);
+      return material.spring_scale * lloyd_stiffness(material.length == LloydLength::tet
+                                                         ? regular_tet_edge(volume)
+                                                         : length,
+                                                     material.young);
     case Law::vangelder:
     case Law::calibrated:
       return material.spring_scale * vangelder_stiffness(volume, length, material.young);

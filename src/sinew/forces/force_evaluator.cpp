@@ -24,8 +24,8 @@ void PlainMaterial::evaluate(const Model& model, const Vec3& gravity, const Stat
   parallel_blocks(model.node_count(), [&](Index b, Range r) {
     for (Index i = r.begin; i < r.end; ++i) {
       Vec3 f = gather_springs(model, spring_force_, i);
-      if (network) f += network_pull(model, state.position, i);
-      if (model.has_volume) f += push_of_tets(model, tets_, i);
+      if (network) f += network_force(model, state.position, i);
+      if (model.has_volume) f += volume_force(model, tets_, i);
       found.force[uz(i)] = f;
     }
     power_[uz(b)] = add_gravity_and_drag(model, gravity, state.half_velocity, r, found.force);

@@ -50,7 +50,7 @@ struct GrabTerm {
 };
 
 // The total force of a grab on its free nodes [N].
-inline Vec3 grab_pull(const Model& model, const Grab& grab, std::span<const Vec3> x) {
+inline Vec3 grab_force(const Model& model, const Grab& grab, std::span<const Vec3> x) {
   Vec3 sum = Vec3::Zero();
   for (std::size_t i = 0; i < grab.nodes.size(); ++i) {
     const auto n = uz(grab.nodes[i]);

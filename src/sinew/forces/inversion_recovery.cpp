@@ -11,12 +11,12 @@ namespace sinew {
 namespace {
 
 // The number of the body's nodes with a prescribed motion.
-Index count_held(const Model& model, const Body& body) {
-  Index held = 0;
+Index count_prescribed(const Model& model, const Body& body) {
+  Index prescribed = 0;
   for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) {
-    held += model.inverse_mass[i] == 0.0 ? 1 : 0;
+    prescribed += model.inverse_mass[i] == 0.0 ? 1 : 0;
   }
-  return held;
+  return prescribed;
 }
 
 Vec3 mean_velocity(const Model& model, const State& state, const Body& body) {
@@ -42,11 +42,11 @@ double scatter_speed(const Model& model, const State& state, const Body& body, c
 
 // w [1/s]: the larger of 8 sqrt(mu / rho) / V^(1/3), with the means of the body's materials, and 2
 // v / V^(1/3), with v = scatter_speed(). The second is for bodies that are hit much faster than
-// their wave speed: a critically damped pull stops nodes of speed v after v / (e w), a fifth of the
-// body's size. Without it the nodes would scatter over many times that size. They would then
+// their wave speed: a critically damped force stops nodes of speed v after v / (e w), a fifth of
+// the body's size. Without it the nodes would scatter over many times that size. They would then
 // enclose a large volume, and its energy would be released at once when the material law acts
 // again.
-double frequency(const Model& model, const State& state, const Body& body, const Vec3& drift) {
+double frequency(const Model& model, const State& state, const Body& body, const Vec3& mean) {
   double stiffness = 0.0;
   for (auto t = uz(body.tets.begin); t < uz(body.tets.end); ++t) {
     stiffness += model.tet_modulus[t] * model.rest_volume[t];
@@ -54,7 +54,7 @@ double frequency(const Model& model, const State& state, const Body& body, const
   double mass = 0.0;
   for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) mass += model.mass[i];
   return std::max(8.0 * std::sqrt(stiffness / mass),
-                  2.0 * scatter_speed(model, state, body, drift)) /
+                  2.0 * scatter_speed(model, state, body, mean)) /
          std::cbrt(body.rest_volume);
 }
 
@@ -80,10 +80,10 @@ std::vector<Index> find_tangled(const Model& model, std::span<const LowTet> low)
 std::vector<Vec3> rest_shape_at(const Model& model, const Body& body, std::span<const Vec3> x) {
   double mass = 0.0;
   for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i) mass += model.mass[i];
-  const Index held = count_held(model, body);
-  const double held_weight = held > 0 ? 1e6 * mass / held : 0.0;
+  const Index prescribed = count_prescribed(model, body);
+  const double prescribed_weight = prescribed > 0 ? 1e6 * mass / prescribed : 0.0;
   const auto weight = [&](std::size_t i) {
-    return model.inverse_mass[i] == 0.0 ? held_weight : model.mass[i];
+    return model.inverse_mass[i] == 0.0 ? prescribed_weight : model.mass[i];
   };
   Vec3 rest_center = Vec3::Zero();
   Vec3 center = Vec3::Zero();
@@ -124,37 +124,37 @@ std::vector<Vec3> recovery_forces(const Model& model, const State& state, double
   for (const Index b : tangled) {
     const Body& body = model.bodies[uz(b)];
     const std::vector<Vec3> goal = rest_shape_at(model, body, x);
-    const Vec3 drift =
-        count_held(model, body) > 0 ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
-    const double w = std::min(frequency(model, state, body, drift), 0.3 / h);
+    const Vec3 mean =
+        count_prescribed(model, body) > 0 ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
+    const double w = std::min(frequency(model, state, body, mean), 0.3 / h);
     parallel_for(body.nodes.size(), [&](Index k) {
       const auto i = uz(body.nodes.begin + k);
       if (model.inverse_mass[i] == 0.0) return;
-      Vec3 law = push_of_tets(model, tets, body.nodes.begin + k);
-      if (!model.network_start.empty()) law += network_pull(model, x, body.nodes.begin + k);
+      Vec3 law = volume_force(model, tets, body.nodes.begin + k);
+      if (!model.network_start.empty()) law += network_force(model, x, body.nodes.begin + k);
       force[i] -= law;
       force[i] +=
-          model.mass[i] * w * (w * (goal[uz(k)] - x[i]) - 2.0 * (state.half_velocity[i] - drift));
+          model.mass[i] * w * (w * (goal[uz(k)] - x[i]) - 2.0 * (state.half_velocity[i] - mean));
     });
   }
   return force;
 }
 
-void lead_tangled_bodies(const Model& model, const Controls& controls, double h,
-                         std::span<const Index> tangled, State& state) {
+void advance_recovery(const Model& model, const Controls& controls, double h,
+                      std::span<const Index> tangled, State& state) {
   for (const Index b : tangled) {
     const Body& body = model.bodies[uz(b)];
     const std::vector<Vec3> goal = rest_shape_at(model, body, state.position);
-    const bool held = count_held(model, body) > 0;
-    const Vec3 drift = held ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
-    const double w = frequency(model, state, body, drift);
-    const Vec3 falling = held ? drift : Vec3(drift + h * controls.gravity);
+    const bool prescribed = count_prescribed(model, body) > 0;
+    const Vec3 mean = prescribed ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
+    const double w = frequency(model, state, body, mean);
+    const Vec3 falling = prescribed ? mean : Vec3(mean + h * controls.gravity);
     const double decay = std::exp(-w * h);
     parallel_for(body.nodes.size(), [&](Index k) {
       const auto i = uz(body.nodes.begin + k);
       if (model.inverse_mass[i] == 0.0) return;
       const Vec3 offset = state.position[i] - goal[uz(k)];
-      const Vec3 speed = state.half_velocity[i] - drift;
+      const Vec3 speed = state.half_velocity[i] - mean;
       const Vec3 c = speed + w * offset;
       state.position[i] = goal[uz(k)] + h * falling + decay * (offset + h * c);
       state.half_velocity[i] = falling + decay * (speed - w * h * c);
@@ -162,14 +162,14 @@ void lead_tangled_bodies(const Model& model, const Controls& controls, double h,
   }
 }
 
-void calm_bodies(const Model& model, std::span<const Index> bodies, State& state) {
+void remove_recovery_velocity(const Model& model, std::span<const Index> bodies, State& state) {
   for (const Index b : bodies) {
     const Body& body = model.bodies[uz(b)];
-    const Vec3 drift =
-        count_held(model, body) > 0 ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
+    const Vec3 mean =
+        count_prescribed(model, body) > 0 ? Vec3(Vec3::Zero()) : mean_velocity(model, state, body);
     parallel_for(body.nodes.size(), [&](Index k) {
       const auto i = uz(body.nodes.begin + k);
-      if (model.inverse_mass[i] > 0.0) state.half_velocity[i] = drift;
+      if (model.inverse_mass[i] > 0.0) state.half_velocity[i] = mean;
     });
   }
 }

@@ -39,14 +39,14 @@ void put_at_rest_shape(const Model& model, std::span<const Index> bodies, State&
 std::vector<Vec3> recovery_forces(const Model& model, const State& state, double h,
                                   std::span<const Index> tangled, std::vector<Vec3> force);
 
-// The same pull over a step of any length, in closed form: on the free nodes of the tangled bodies
+// The same force over a step of any length, in closed form: on the free nodes of the tangled bodies
 // x = g + (d + c h) e^-wh + v h,  d = x - g,  c = (v_i - v) + w d, with no limit on w. A body
 // without pinned nodes falls with gravity as a whole. Sets positions and velocities.
-void lead_tangled_bodies(const Model& model, const Controls& controls, double h,
-                         std::span<const Index> tangled, State& state);
+void advance_recovery(const Model& model, const Controls& controls, double h,
+                      std::span<const Index> tangled, State& state);
 
-// Removes the velocity of the pull from these bodies: their free nodes get the mean velocity, or 0
-// if a node is pinned.
-void calm_bodies(const Model& model, std::span<const Index> bodies, State& state);
+// Removes the velocity of the recovery from these bodies: their free nodes get the mean velocity,
+// or 0 if a node is pinned.
+void remove_recovery_velocity(const Model& model, std::span<const Index> bodies, State& state);
 
 }  // namespace sinew

@@ -6,11 +6,6 @@
 
 namespace sinew {
 
-// Edge length of the regular tet of volume V [m3]: l = (6 sqrt(2) V)^(1/3) [m].
-inline double regular_edge(double volume) {
-  return std::cbrt(6.0 * std::numbers::sqrt2 * volume);
-}
-
 // The contribution of one tet to the stiffness of its edge, after Lloyd, Szekely and Harders 2007:
 // (2 sqrt(2) / 25) l E. length [m], young [Pa]; returns [N/m].
 inline double lloyd_stiffness(double length, double young) {

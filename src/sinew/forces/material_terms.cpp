@@ -14,11 +14,11 @@ double SpringTerm::energy(const Configuration& at) {
 void SpringTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
   for (std::size_t s = 0; s < at.model.springs.size(); ++s) {
     const auto [i, j] = at.model.springs[s];
-    const Vec3 pull = spring_pull(at.x[uz(j)] - at.x[uz(i)], Vec3::Zero(), at.model.stiffness[s],
-                                  at.model.rest_length[s], 0.0)
-                          .force;
-    forces[uz(i)] += pull;
-    forces[uz(j)] -= pull;
+    const Vec3 force = spring_force(at.x[uz(j)] - at.x[uz(i)], Vec3::Zero(), at.model.stiffness[s],
+                                    at.model.rest_length[s], 0.0)
+                           .force;
+    forces[uz(i)] += force;
+    forces[uz(j)] -= force;
   }
 }
 
@@ -29,7 +29,7 @@ double NetworkTerm::energy(const Configuration& at) {
 void NetworkTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
   if (at.model.network_start.empty()) return;
   for (Index i = 0; i < at.model.node_count(); ++i)
-    forces[uz(i)] += network_pull(at.model, at.x, i);
+    forces[uz(i)] += network_force(at.model, at.x, i);
 }
 
 double VolumeTerm::energy(const Configuration& at) {
@@ -40,7 +40,7 @@ void VolumeTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
   if (!at.model.has_volume) return;
   const TetState tets = compute_tet_state(at.model, at.x);
   for (Index i = 0; i < at.model.node_count(); ++i)
-    forces[uz(i)] += push_of_tets(at.model, tets, i);
+    forces[uz(i)] += volume_force(at.model, tets, i);
 }
 
 double GravityTerm::energy(const Configuration& at) {
@@ -64,7 +64,7 @@ VolumeParts::VolumeParts(const Configuration& at) {
   TetState tets = compute_tet_state(m, at.x);
   for (std::size_t t = 0; t < m.tets.size(); ++t)
     stiffness.push_back(tet_volume_stiffness(m, t, tets.volume[t]) / m.rest_volume[t]);
-  push = std::move(tets.pressure);
+  pressure = std::move(tets.pressure);
   gradient = std::move(tets.gradient);
   for (std::size_t c = 0; c < m.cell_volume.size(); ++c) {
     Cell cell;

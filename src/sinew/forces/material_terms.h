@@ -96,7 +96,7 @@ struct VolumeParts {
     std::vector<Index> nodes;    // once for each of its tets
     std::vector<Vec3> gradient;  // [m2] (nodes)
   };
-  std::vector<double> push;                   // s of the tets [Pa] (tets)
+  std::vector<double> pressure;               // s of the tets [Pa] (tets)
   std::vector<double> stiffness;              // d2W/dv2 of the tets' own energies [Pa/m3] (tets)
   std::vector<std::array<Vec3, 4>> gradient;  // dv/dx of the corners [m2] (tets)
   std::vector<Cell> cells;
@@ -105,7 +105,7 @@ struct VolumeParts {
 template <class F>
 void VolumeTerm::for_each_block(const Configuration& at, const F& visit) {
   const VolumeParts parts(at);
-  for (std::size_t t = 0; t < parts.push.size(); ++t) {
+  for (std::size_t t = 0; t < parts.pressure.size(); ++t) {
     const Tet& tet = at.model.tets[t];
     for (std::size_t a = 0; a < 4; ++a) {
       for (std::size_t b = 0; b < 4; ++b) {
@@ -114,7 +114,7 @@ void VolumeTerm::for_each_block(const Configuration& at, const F& visit) {
       }
     }
     for (const CornerPair& p : corner_pairs) {
-      const Vec3 r = -parts.push[t] / 6.0 * (at.x[uz(tet[p.d])] - at.x[uz(tet[p.c])]);
+      const Vec3 r = -parts.pressure[t] / 6.0 * (at.x[uz(tet[p.d])] - at.x[uz(tet[p.c])]);
       Mat3 block;
       block << 0.0, -r.z(), r.y(), r.z(), 0.0, -r.x(), -r.y(), r.x(), 0.0;
       visit(tet[p.a], tet[p.b], block);

@@ -25,7 +25,7 @@ void add_network(Model& model, const TetMesh& mesh, const std::vector<Material>&
                  std::span<const int> tet_region, Index first_node);
 
 // The force of the network on the node, sum_j k_ij (x_j - x_i) [N].
-inline Vec3 network_pull(const Model& model, std::span<const Vec3> x, Index node) {
+inline Vec3 network_force(const Model& model, std::span<const Vec3> x, Index node) {
   Vec3 sum = Vec3::Zero();
   const auto n = uz(node);
   for (Index e = model.network_start[n]; e < model.network_start[n + 1]; ++e) {

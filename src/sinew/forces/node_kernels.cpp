@@ -101,8 +101,8 @@ void displacements(const Frame& frame, std::span<const Index> nodes, const Model
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (nodes[k] < 0) continue;
     const auto i = uz(nodes[k]);
-    const Three way = turn_back(state.position[i], frame.centre);
-    store(way - (load(model.rest_position[i]) - rest_centre), u + 4 * k);
+    const Three displacement = turn_back(state.position[i], frame.centre);
+    store(displacement - (load(model.rest_position[i]) - rest_centre), u + 4 * k);
     if (v != nullptr) store(turn_back(state.half_velocity[i], frame.velocity), v + 4 * k);
   }
 }
@@ -143,7 +143,7 @@ double finish_nodes(const Model& model, const Vec3& g, const Vec3* w, std::span<
   return power;
 }
 
-bool move(const Model& model, const Vec3* force, double kick, double h, double farthest,
+bool move(const Model& model, const Vec3* force, double mean_step, double h, double farthest,
           Range nodes, State& state) {
   const double* inverse_mass = model.inverse_mass.data();
   Vec3* velocity = state.half_velocity.data();
@@ -151,7 +151,7 @@ bool move(const Model& model, const Vec3* force, double kick, double h, double f
   bool within = true;
   for (auto i = uz(nodes.begin); i < uz(nodes.end); ++i) {
     if (inverse_mass[i] == 0.0) continue;
-    const Three w = load(velocity[i]) + (kick * inverse_mass[i]) * load(force[i]);
+    const Three w = load(velocity[i]) + (mean_step * inverse_mass[i]) * load(force[i]);
     const Three x = load(position[i]) + h * w;
     store(w, velocity[i]);
     store(x, position[i]);
@@ -189,9 +189,9 @@ double add_gravity_and_drag(const Model& model, const Vec3& gravity, const std::
   return HWY_DYNAMIC_DISPATCH(finish_nodes)(model, gravity, w.data(), nodes, given, force.data());
 }
 
-bool kick_and_drift(const Model& model, const std::vector<Vec3>& force, double kick, double h,
-                    double farthest, Range nodes, State& state) {
-  return HWY_DYNAMIC_DISPATCH(move)(model, force.data(), kick, h, farthest, nodes, state);
+bool leapfrog(const Model& model, const std::vector<Vec3>& force, double mean_step, double h,
+              double farthest, Range nodes, State& state) {
+  return HWY_DYNAMIC_DISPATCH(move)(model, force.data(), mean_step, h, farthest, nodes, state);
 }
 
 }  // namespace sinew

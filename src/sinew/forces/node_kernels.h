@@ -31,9 +31,9 @@ double add_gravity_and_drag(const Model& model, const Vec3& gravity, const std::
                             std::span<const Index> nodes, const float* given,
                             std::vector<Vec3>& force);
 
-// For the free nodes of the range: w += kick / m f, x += h w. Returns whether all positions are
-// finite and within `farthest` [m] in every coordinate.
-bool kick_and_drift(const Model& model, const std::vector<Vec3>& force, double kick, double h,
-                    double farthest, Range nodes, State& state);
+// For the free nodes of the range: w += mean_step / m f, x += h w. Returns whether all positions
+// are finite and within `farthest` [m] in every coordinate.
+bool leapfrog(const Model& model, const std::vector<Vec3>& force, double mean_step, double h,
+              double farthest, Range nodes, State& state);
 
 }  // namespace sinew

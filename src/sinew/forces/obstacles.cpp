@@ -90,15 +90,15 @@ void ObstacleTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
   for_each_surface_node(model, [&](std::size_t n) {
     for (const SoftSphere& s : spheres)
       forces[n] +=
-          obstacle_push(at.x[n] - s.center, s.radius, s.stiffness * model.surface_share[n]);
+          obstacle_force(at.x[n] - s.center, s.radius, s.stiffness * model.surface_share[n]);
   });
 }
 
 SoftReading read_soft_sphere(const Model& model, const SoftSphere& sphere,
                              std::span<const Vec3> x) {
   SoftReading reading;
-  for_each_pressed(model, sphere, x, [&](std::size_t, const Vec3& r, const Vec3& push) {
-    reading.force -= push;
+  for_each_pressed(model, sphere, x, [&](std::size_t, const Vec3& r, const Vec3& force) {
+    reading.force -= force;
     reading.depth = std::max(reading.depth, sphere.radius - r.norm());
     ++reading.contacts;
   });

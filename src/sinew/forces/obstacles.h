@@ -27,7 +27,7 @@ inline double obstacle_energy(const Vec3& r, double radius, double stiffness) {
 }
 
 // The force on the node, k A (R - |r|) r / |r| [N].
-inline Vec3 obstacle_push(const Vec3& r, double radius, double stiffness) {
+inline Vec3 obstacle_force(const Vec3& r, double radius, double stiffness) {
   const double distance = r.norm();
   if (distance >= radius || distance == 0.0) return Vec3::Zero();
   return (stiffness * (radius / distance - 1.0)) * r;
@@ -80,7 +80,7 @@ struct ObstacleTerm {
   template <class F>
   static void for_each_element(const Configuration& at, Tangent tangent, const F& visit);
   // Sum of k A of the spheres; 0 but on the surface. A step that is stable with it is stable
-  // whichever nodes the spheres come to touch.
+  // whichever nodes the spheres come in contact with.
   static double most_stiffness(const Model& model, const Controls& controls, Index node) {
     if (uz(node) >= model.surface_share.size()) return 0.0;
     const double share = model.surface_share[uz(node)];
@@ -111,8 +111,8 @@ void ObstacleTerm::for_each_element(const Configuration& at, Tangent tangent, co
   }
 }
 
-// Calls f(node, r, push) for every node that the sphere presses at x [m] (nodes), rising: r from
-// its centre to the node [m], push on the node [N].
+// Calls f(node, r, force) for every node that the sphere presses at x [m] (nodes), rising: r from
+// its centre to the node [m], force on the node [N].
 template <class F>
 void for_each_pressed(const Model& model, const SoftSphere& sphere, std::span<const Vec3> x,
                       const F& f) {
@@ -120,7 +120,7 @@ void for_each_pressed(const Model& model, const SoftSphere& sphere, std::span<co
     if (model.surface_share[n] == 0.0 || model.inverse_mass[n] == 0.0) continue;
     const Vec3 r = x[n] - sphere.center;
     if (sphere.radius - r.norm() <= 0.0) continue;
-    f(n, r, obstacle_push(r, sphere.radius, sphere.stiffness * model.surface_share[n]));
+    f(n, r, obstacle_force(r, sphere.radius, sphere.stiffness * model.surface_share[n]));
   }
 }
 
@@ -133,7 +133,7 @@ struct SoftReading {
 SoftReading read_soft_sphere(const Model& model, const SoftSphere& sphere, std::span<const Vec3> x);
 
 // Calls f(work) for every sphere that moves from the time `from` to `to` [s]: the force of the
-// bodies on it, as all is at `now`, times its way [J].
+// bodies on it, as all is at `now`, times its displacement [J].
 template <class F>
 void for_each_work_on_spheres(const Configuration& now, double from, double to, const F& f) {
   const auto at = [&](double time) { return soft_spheres(now.model, now.controls, time); };
@@ -141,9 +141,9 @@ void for_each_work_on_spheres(const Configuration& now, double from, double to, 
   const std::vector<SoftSphere> before = at(from);
   const std::vector<SoftSphere> after = at(to);
   for (std::size_t s = 0; s < spheres.size(); ++s) {
-    const Vec3 way = after[s].center - before[s].center;
-    if (way.isZero(0.0)) continue;
-    f(read_soft_sphere(now.model, spheres[s], now.x).force.dot(way));
+    const Vec3 displacement = after[s].center - before[s].center;
+    if (displacement.isZero(0.0)) continue;
+    f(read_soft_sphere(now.model, spheres[s], now.x).force.dot(displacement));
   }
 }
 
@@ -154,7 +154,7 @@ struct ObstacleReading {
   Vec3 travel = Vec3::Zero();  // of the centre since time 0 [m]
   Vec3 force = Vec3::Zero();   // of the bodies on the obstacle [N]
   double depth = 0.0;          // of the deepest node [m]
-  Index contacts = 0;          // nodes that it pushes
+  Index contacts = 0;          // nodes that it presses
 };
 // The force on the obstacle against its travel [N]: that on an indenter, > 0 if it is pushed back.
 // 0 before it has moved.

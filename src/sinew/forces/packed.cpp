@@ -35,8 +35,8 @@ void copy_four(const std::vector<float>& from, Index i, std::vector<float>& to, 
 void PackedForces::compute_frames(const Model& model, const State& state) {
   const auto& x = state.position;
   const auto& X = model.rest_position;
-  for (std::size_t b = 0; b < triads_.size(); ++b) {
-    const auto [i, j, k] = triads_[b];
+  for (std::size_t b = 0; b < frame_nodes_.size(); ++b) {
+    const auto [i, j, k] = frame_nodes_[b];
     Frame& frame = frames_[b];
     frame.centre = x[uz(i)];
     frame.rest_centre = X[uz(i)];
@@ -92,16 +92,16 @@ void PackedForces::turn_loose_forces(const Patch& patch) {
   }
 }
 
-PackedGroups PackedForces::fans_of(const Patch& patch) const {
-  const Groups& g = patch.fans;
-  return {fan_corner_.data() + g.first_corner, fan_data_.data() + g.first_datum,
-          fan_length_.data() + g.groups.begin, g.groups.size()};
+PackedGroups PackedForces::rings_of(const Patch& patch) const {
+  const Groups& g = patch.rings;
+  return {ring_corner_.data() + g.first_corner, ring_data_.data() + g.first_datum,
+          ring_length_.data() + g.groups.begin, g.groups.size()};
 }
 
-PackedGroups PackedForces::stars_of(const Patch& patch) const {
-  const Groups& g = patch.stars;
-  return {star_corner_.data() + g.first_corner, star_data_.data() + g.first_datum,
-          star_length_.data() + g.groups.begin, g.groups.size()};
+PackedGroups PackedForces::one_rings_of(const Patch& patch) const {
+  const Groups& g = patch.one_rings;
+  return {one_ring_corner_.data() + g.first_corner, one_ring_data_.data() + g.first_datum,
+          one_ring_length_.data() + g.groups.begin, g.groups.size()};
 }
 
 double PackedForces::compute(const Model& model, const State& state) {
@@ -122,7 +122,7 @@ double PackedForces::compute_nearby(const Model& model, const State& state) {
     const FlushDenormals flush;
     const Patch& patch = patches_[uz(p)];
     fill_slots(model, state, patch);
-    packed_volumes(fans_of(patch), slot_displacement_.data() + 4 * patch.slots.begin,
+    packed_volumes(rings_of(patch), slot_displacement_.data() + 4 * patch.slots.begin,
                    tet_change_.data() + patch.first_tet,
                    slot_force_.data() + 4 * patch.slots.begin);
   });
@@ -139,9 +139,9 @@ double PackedForces::compute_nearby(const Model& model, const State& state) {
     std::fill_n(force, 4 * patch.slots.size(), 0.0f);
     const float* u = slot_displacement_.data() + 4 * patch.slots.begin;
     smallest[uz(p)] =
-        packed_tet_forces(fans_of(patch), u, tet_change_.data() + patch.first_tet, force);
+        packed_tet_forces(rings_of(patch), u, tet_change_.data() + patch.first_tet, force);
     if (!velocity_.empty()) {
-      heat[uz(p)] = packed_spring_forces(stars_of(patch), u,
+      heat[uz(p)] = packed_spring_forces(one_rings_of(patch), u,
                                          slot_velocity_.data() + 4 * patch.slots.begin, force);
     }
     if (patch.is_loose()) turn_loose_forces(patch);
@@ -154,19 +154,19 @@ double PackedForces::compute_nearby(const Model& model, const State& state) {
 }
 
 void PackedForces::find_low_tets(const Patch& patch) {
-  const PackedGroups fans = fans_of(patch);
-  const float* inverse_volume = fans.data + 3 * packed_lanes;
+  const PackedGroups rings = rings_of(patch);
+  const float* inverse_volume = rings.data + 3 * packed_lanes;
   auto tet = uz(patch.first_tet);
-  for (Index g = 0; g < fans.groups; ++g) {
-    inverse_volume += fan_head_fields * packed_lanes;
-    for (int k = 0; k < fans.length[g]; ++k) {
+  for (Index g = 0; g < rings.groups; ++g) {
+    inverse_volume += ring_head_fields * packed_lanes;
+    for (int k = 0; k < rings.length[g]; ++k) {
       for (Index lane = 0; lane < packed_lanes; ++lane, ++tet) {
         if (tet_id_[tet] < 0) continue;
         if (!(1.0f + tet_change_[tet] * inverse_volume[lane] >= static_cast<float>(low_ratio))) {
           low_tets_.push_back(tet_id_[tet]);
         }
       }
-      inverse_volume += fan_tet_fields * packed_lanes;
+      inverse_volume += ring_tet_fields * packed_lanes;
     }
   }
 }
@@ -192,11 +192,11 @@ void PackedForces::gather(std::span<Vec3> force) const {
 
 std::size_t PackedForces::bytes() const {
   const auto of = [](const auto&... arrays) { return ((arrays.size() * sizeof(arrays[0])) + ...); };
-  return of(patches_, triads_, node_of_, body_of_, slot_node_, slot_cell_, other_slot_, other_node_,
-            cell_start_, cell_slot_, cell_stiffness_, fan_corner_, fan_data_, fan_length_, tet_id_,
-            star_corner_, star_data_, star_length_, row_start_, row_offset_, row_stiffness_,
-            frames_, displacement_, velocity_, slot_displacement_, slot_velocity_, slot_force_,
-            tet_change_, cell_pressure_);
+  return of(patches_, frame_nodes_, node_of_, body_of_, slot_node_, slot_cell_, other_slot_,
+            other_node_, cell_start_, cell_slot_, cell_stiffness_, ring_corner_, ring_data_,
+            ring_length_, tet_id_, one_ring_corner_, one_ring_data_, one_ring_length_, row_start_,
+            row_offset_, row_stiffness_, frames_, displacement_, velocity_, slot_displacement_,
+            slot_velocity_, slot_force_, tet_change_, cell_pressure_);
 }
 
 }  // namespace sinew

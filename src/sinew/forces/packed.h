@@ -67,7 +67,7 @@ class PackedForces {
 
   static constexpr Index most_nodes = 512;  // per patch: its slots stay in the L1 cache
 
-  // The start of a patch's groups of fans or stars in the common arrays.
+  // The start of a patch's groups of rings or one-rings in the common arrays.
   struct Groups {
     Range groups;
     Index first_corner = 0;
@@ -78,15 +78,15 @@ class PackedForces {
     Range nodes;      // packed; an even number, the last one may be no node
     Range slots;      // the first are the patch's own nodes
     Range others;     // in other_slot_
-    Groups fans;
-    Groups stars;
+    Groups rings;
+    Groups one_rings;
     Index first_tet = 0;  // in tet_id_ and tet_change_
 
     // Whether it holds the springs between bodies and to points, in no body's frame.
     bool is_loose() const { return body < 0 && nodes.size() == 0; }
   };
   // Three nodes of a body, far apart, that define its frame.
-  using Triad = std::array<Index, 3>;
+  using FrameNodes = std::array<Index, 3>;
 
   Frame frame_of(Index body) const { return body < 0 ? Frame() : frames_[uz(body)]; }
   void compute_frames(const Model& model, const State& state);
@@ -95,28 +95,28 @@ class PackedForces {
   void turn_loose_forces(const Patch& patch);
   void find_low_tets(const Patch& patch);
   void gather(const Patch& patch, float* force) const;
-  PackedGroups fans_of(const Patch& patch) const;
-  PackedGroups stars_of(const Patch& patch) const;
+  PackedGroups rings_of(const Patch& patch) const;
+  PackedGroups one_rings_of(const Patch& patch) const;
 
   std::vector<Patch> patches_;
-  std::vector<Triad> triads_;              // (bodies)
-  std::vector<Index> node_of_;             // the model's node (packed nodes) -1: none
-  std::vector<Index> body_of_;             // (packed nodes) -1: none
-  std::vector<Index> slot_node_;           // packed (slots)
-  std::vector<Index> slot_cell_;           // (slots) -1: none
-  std::vector<Index> other_slot_;          // patch by patch: other patches' slots that act on it
-  std::vector<std::uint16_t> other_node_;  // 4 x the node, from the patch's first (as other_slot_)
-  std::vector<Index> cell_start_;          // offsets into cell_slot_ (cells + 1)
-  std::vector<Index> cell_slot_;           // ascending for each cell
-  std::vector<float> cell_stiffness_;      // kappa_c W^2 / V_c [Pa/m3], W the weight (cells)
-  std::vector<std::uint16_t> fan_corner_;  // packed_kernels.h
-  std::vector<float> fan_data_;
-  std::vector<std::uint8_t> fan_length_;  // (groups)
-  std::vector<Index> tet_id_;             // (8 per group and tet) -1: none
-  std::vector<std::uint16_t> star_corner_;
-  std::vector<float> star_data_;
-  std::vector<std::uint8_t> star_length_;  // (groups)
-  std::vector<Index> row_start_;           // PackedRows; empty: no network
+  std::vector<FrameNodes> frame_nodes_;     // (bodies)
+  std::vector<Index> node_of_;              // the model's node (packed nodes) -1: none
+  std::vector<Index> body_of_;              // (packed nodes) -1: none
+  std::vector<Index> slot_node_;            // packed (slots)
+  std::vector<Index> slot_cell_;            // (slots) -1: none
+  std::vector<Index> other_slot_;           // patch by patch: other patches' slots that act on it
+  std::vector<std::uint16_t> other_node_;   // 4 x the node, from the patch's first (as other_slot_)
+  std::vector<Index> cell_start_;           // offsets into cell_slot_ (cells + 1)
+  std::vector<Index> cell_slot_;            // ascending for each cell
+  std::vector<float> cell_stiffness_;       // kappa_c W^2 / V_c [Pa/m3], W the weight (cells)
+  std::vector<std::uint16_t> ring_corner_;  // packed_kernels.h
+  std::vector<float> ring_data_;
+  std::vector<std::uint8_t> ring_length_;  // (groups)
+  std::vector<Index> tet_id_;              // (8 per group and tet) -1: none
+  std::vector<std::uint16_t> one_ring_corner_;
+  std::vector<float> one_ring_data_;
+  std::vector<std::uint8_t> one_ring_length_;  // (groups)
+  std::vector<Index> row_start_;               // PackedRows; empty: no network
   std::vector<std::uint32_t> row_offset_;
   std::vector<float> row_stiffness_;  // [N/m]
 

@@ -1,4 +1,4 @@
-// Puts fans and stars into groups of eight, for packer.cpp.
+// Puts rings and one-rings into groups of eight, for packer.cpp.
 #pragma once
 
 #include <algorithm>
@@ -15,13 +15,13 @@
 namespace sinew {
 
 // The springs of a node.
-struct Star {
+struct OneRing {
   Index centre = 0;
   std::vector<Index> springs;
 
   std::size_t length() const { return springs.size(); }
-  Star split_last() {
-    Star last{centre, {springs.back()}};
+  OneRing split_last() {
+    OneRing last{centre, {springs.back()}};
     springs.pop_back();
     return last;
   }

@@ -40,10 +40,10 @@ struct Cursor {
 // With d the change of an edge from axis[0], e = E + d, and index 1 for the axis itself:
 //   6 (v - V) = c_p . e_q + (E_1 x E_p) . d_q,   c_p = d_1 x e_p + E_1 x d_p,
 // where c_p is the change of e_1 x e_p: no terms cancel at rest.
-void volumes(const PackedGroups& fans, const float* u, float* change, float* force) {
-  Cursor at{fans.corner, fans.data};
+void volumes(const PackedGroups& rings, const float* u, float* change, float* force) {
+  Cursor at{rings.corner, rings.data};
   float* sum = force + 3;
-  for (Index g = 0; g < fans.groups; ++g) {
+  for (Index g = 0; g < rings.groups; ++g) {
     const std::uint16_t* a = at.next_corner();
     const std::uint16_t* b = at.next_corner();
     const std::uint16_t* p = at.next_corner();
@@ -52,10 +52,10 @@ void volumes(const PackedGroups& fans, const float* u, float* change, float* for
     const Eight3 E1 = at.next3();
     Eight3 dp = load_rows(u, p).v - ua;
     Eight3 Ep = at.next3();
-    at.data += (fan_head_fields - 6) * packed_lanes;
+    at.data += (ring_head_fields - 6) * packed_lanes;
     Eight of_axis = zero();
     Eight before = zero();
-    for (int k = 0; k < fans.length[g]; ++k) {
+    for (int k = 0; k < rings.length[g]; ++k) {
       const std::uint16_t* q = at.next_corner();
       const Eight3 dq = load_rows(u, q).v - ua;
       const Eight3 Eq = at.next3();
@@ -88,11 +88,11 @@ void volumes(const PackedGroups& fans, const float* u, float* change, float* for
 //   on ring[k]     -(s e_1 x e_q - m c_q),
 //   on axis[1]      (s e_p - m d_p) x e_q - m E_p x d_q,
 // and on axis[0] minus their sum.
-float tet_forces(const PackedGroups& fans, const float* u, const float* change, float* force) {
-  Cursor at{fans.corner, fans.data};
+float tet_forces(const PackedGroups& rings, const float* u, const float* change, float* force) {
+  Cursor at{rings.corner, rings.data};
   const Eight one = set(1.0f);
   Eight smallest = one;
-  for (Index g = 0; g < fans.groups; ++g) {
+  for (Index g = 0; g < rings.groups; ++g) {
     const std::uint16_t* a = at.next_corner();
     const std::uint16_t* b = at.next_corner();
     const std::uint16_t* p = at.next_corner();
@@ -117,7 +117,7 @@ float tet_forces(const PackedGroups& fans, const float* u, const float* change, 
     Eight3 on_p = {zero(), zero(), zero()};
     Eight3 on_b = on_p;
     Eight3 on_ring = on_p;
-    for (int k = 0; k < fans.length[g]; ++k) {
+    for (int k = 0; k < rings.length[g]; ++k) {
       const std::uint16_t* q = at.next_corner();
       const Rows rq = load_rows(u, q);
       const Eight3 dq = rq.v - ra.v;
@@ -158,16 +158,16 @@ float tet_forces(const PackedGroups& fans, const float* u, const float* change, 
 
 // As in spring_law.h, with |x| - l0 = (|x|^2 - l0^2) / (|x| + l0) from the change of the square,
 // and one division for both: r = 1 / ((|x| + l0) |x|^2).
-double spring_forces(const PackedGroups& stars, const float* u, const float* velocity,
+double spring_forces(const PackedGroups& one_rings, const float* u, const float* velocity,
                      float* force) {
-  Cursor at{stars.corner, stars.data};
+  Cursor at{one_rings.corner, one_rings.data};
   Eight heat = zero();
-  for (Index g = 0; g < stars.groups; ++g) {
+  for (Index g = 0; g < one_rings.groups; ++g) {
     const std::uint16_t* centre = at.next_corner();
     const Eight3 ui = load_rows(u, centre).v;
     const Eight3 vi = load_rows(velocity, centre).v;
     Eight3 on_centre = {zero(), zero(), zero()};
-    for (int k = 0; k < stars.length[g]; ++k) {
+    for (int k = 0; k < one_rings.length[g]; ++k) {
       const std::uint16_t* end = at.next_corner();
       const Eight3 change = load_rows(u, end).v - ui;
       const Eight3 speed = load_rows(velocity, end).v - vi;
@@ -269,18 +269,18 @@ HWY_EXPORT(tet_forces);
 HWY_EXPORT(spring_forces);
 HWY_EXPORT(gather);
 
-void packed_volumes(const PackedGroups& fans, const float* u, float* change, float* force) {
-  HWY_DYNAMIC_DISPATCH(volumes)(fans, u, change, force);
+void packed_volumes(const PackedGroups& rings, const float* u, float* change, float* force) {
+  HWY_DYNAMIC_DISPATCH(volumes)(rings, u, change, force);
 }
 
-float packed_tet_forces(const PackedGroups& fans, const float* u, const float* change,
+float packed_tet_forces(const PackedGroups& rings, const float* u, const float* change,
                         float* force) {
-  return HWY_DYNAMIC_DISPATCH(tet_forces)(fans, u, change, force);
+  return HWY_DYNAMIC_DISPATCH(tet_forces)(rings, u, change, force);
 }
 
-double packed_spring_forces(const PackedGroups& stars, const float* u, const float* velocity,
+double packed_spring_forces(const PackedGroups& one_rings, const float* u, const float* velocity,
                             float* force) {
-  return HWY_DYNAMIC_DISPATCH(spring_forces)(stars, u, velocity, force);
+  return HWY_DYNAMIC_DISPATCH(spring_forces)(one_rings, u, velocity, force);
 }
 
 void packed_gather(const Frame& frame, const PackedRows& rows, const PackedSlots& slots,

@@ -1,7 +1,7 @@
-// The loops of PackedForces over groups of eight fans of tets or stars of springs, for every
+// The loops of PackedForces over groups of eight rings of tets or one-rings of springs, for every
 // instruction set that the processor may have; all give the same bits.
 //
-// A group is eight fans of the same length, one per lane. Its corners are stored as
+// A group is eight rings of the same length, one per lane. Its corners are stored as
 //   axis[0], axis[1], ring[0], ring[1], ...   eight of each,
 // each as 4 x slot: the offset of the slot's four floats. Its data are a head and then, for each
 // tet, the data of the tet and of the ring's next node, eight of each field.
@@ -17,30 +17,30 @@ namespace sinew {
 inline constexpr Index packed_lanes = 8;
 // Head: rest edges from axis[0] to axis[1] and to ring[0] (6) [m], mu / 6 [Pa], kappa [Pa], mu of
 // the guard [Pa].
-inline constexpr Index fan_head_fields = 9;
+inline constexpr Index ring_head_fields = 9;
 // Rest edge from axis[0] to ring[k + 1] (3) [m], 1 / V [1/m3], share of a corner's cell per weight
 // of the cell [-].
-inline constexpr Index fan_tet_fields = 5;
-// X_ij (3) [m], |X_ij|^2 - l0^2 [m2], l0 [m], k [N/m], c [N s/m]; i is the star's centre.
-inline constexpr Index star_spring_fields = 7;
+inline constexpr Index ring_tet_fields = 5;
+// X_ij (3) [m], |X_ij|^2 - l0^2 [m2], l0 [m], k [N/m], c [N s/m]; i is the one-ring's centre.
+inline constexpr Index one_ring_spring_fields = 7;
 
-// Groups of fans or stars, one after the other.
+// Groups of rings or one-rings, one after the other.
 struct PackedGroups {
-  const std::uint16_t* corner = nullptr;  // of a star: the centre, then the other ends
+  const std::uint16_t* corner = nullptr;  // of a one-ring: the centre, then the other ends
   const float* data = nullptr;
-  const std::uint8_t* length = nullptr;  // tets or springs of each fan or star (groups)
+  const std::uint8_t* length = nullptr;  // tets or springs of each ring or one-ring (groups)
   Index groups = 0;
 };
 
 // change = v - V of every tet. Adds share times change to the fourth float of the slots of all four
 // corners in `force` (4 per slot).
-void packed_volumes(const PackedGroups& fans, const float* u, float* change, float* force);
+void packed_volumes(const PackedGroups& rings, const float* u, float* change, float* force);
 // Adds the forces of the tets to `force`. The fourth floats of u are the cells' pressures times
 // their weights. Returns the smallest v/V.
-float packed_tet_forces(const PackedGroups& fans, const float* u, const float* change,
+float packed_tet_forces(const PackedGroups& rings, const float* u, const float* change,
                         float* force);
 // Adds the forces of the springs; returns the heat of the dashpots [W].
-double packed_spring_forces(const PackedGroups& stars, const float* u, const float* velocity,
+double packed_spring_forces(const PackedGroups& one_rings, const float* u, const float* velocity,
                             float* force);
 
 // Rows of the network in pairs: both nodes of a pair have the same list of neighbours.

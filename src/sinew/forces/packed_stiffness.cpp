@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/stiffness.h"
+#include "sinew/model/mean_edge.h"
 
 namespace sinew {
 namespace {
@@ -13,14 +13,12 @@ namespace {
 // Share of an edge. A smaller displacement is lost in the rounding of displacements of the size of
 // the body. Volumes and their pressures are polynomials of the positions, smooth over a share of an
 // edge even if a tet is flat.
-constexpr double way_in_edges = 3e-4;
+constexpr double displacement_in_edges = 3e-4;
 
-// The edge of a regular tet of the mean volume [m]: V = l^3 / (6 sqrt 2).
-double mean_edge(const Model& model) {
-  if (model.rest_volume.empty()) return 1.0;  // dashpots alone: the force is linear in v
-  const double volume =
-      std::accumulate(model.rest_volume.begin(), model.rest_volume.end(), 0.0) / model.tet_count();
-  return std::cbrt(6.0 * std::sqrt(2.0) * volume);
+// The largest displacement of a product [m].
+double largest_displacement(const Model& model) {
+  if (model.tets.empty()) return displacement_in_edges;  // dashpots alone: any length will do
+  return displacement_in_edges * mean_edge(model);
 }
 
 double largest_norm(std::span<const Vec3> u) {
@@ -37,7 +35,7 @@ PackedStiffness::PackedStiffness(const Model& model, const Controls& controls,
       controls_(controls),
       x_(x),
       packed_(packed),
-      longest_way_(way_in_edges * mean_edge(model)),
+      largest_displacement_(largest_displacement(model)),
       base_force_(x.size()) {
   state_.position = x;
   state_.half_velocity.assign(x.size(), Vec3::Zero());
@@ -52,7 +50,7 @@ void PackedStiffness::times(double a, double b, std::span<const Vec3> u, std::sp
     return;
   }
   // If a is 0, the largest velocity is one metre per second.
-  const double s = a > 0.0 ? longest_way_ / (a * longest) : 1.0 / (b * longest);
+  const double s = a > 0.0 ? largest_displacement_ / (a * longest) : 1.0 / (b * longest);
   parallel_for(model_.node_count(), [&](Index i) {
     const auto n = uz(i);
     state_.position[n] = x_[n] + (s * a) * u[n];

@@ -29,7 +29,7 @@ class PackedStiffness {
   const Controls& controls_;
   const std::vector<Vec3>& x_;
   PackedForces& packed_;
-  double longest_way_;               // [m]
+  double largest_displacement_;      // [m]
   State state_;                      // x + s a u, s b u
   std::vector<Vec3> base_force_;     // f(x, 0) [N] (nodes)
   std::vector<Vec3> viscous_force_;  // scratch (slots)

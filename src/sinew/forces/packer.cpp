@@ -13,14 +13,14 @@
 namespace sinew {
 namespace {
 
-constexpr std::size_t longest_fan = 6;
-constexpr std::size_t longest_star = 8;
+constexpr std::size_t longest_ring = 6;
+constexpr std::size_t longest_one_ring = 8;
 constexpr std::size_t most_slots = 0x10000 / 4;  // per patch: 4 x slot has 16 bits
-constexpr std::size_t most_slots_of_group = 8 * (3 + std::max(longest_fan, longest_star));
+constexpr std::size_t most_slots_of_group = 8 * (3 + std::max(longest_ring, longest_one_ring));
 
 // Three nodes of the body: the one nearest to its middle, the farthest from that one, and the
 // farthest from the line of both.
-std::array<Index, 3> triad_of(const Model& model, const Body& body) {
+std::array<Index, 3> frame_nodes_of(const Model& model, const Body& body) {
   const auto& X = model.rest_position;
   const auto best = [&](const auto& score) {
     Index chosen = body.nodes.begin;
@@ -65,16 +65,17 @@ class Packer {
       }
     }
     weigh_cells();
-    std::vector<std::vector<EdgeRing>> fans(patches);
+    std::vector<std::vector<EdgeRing>> rings(patches);
     parallel_tasks(to_.patch_count(), [&](Index p) {
-      fans[uz(p)] = cut_into_edge_rings(model_.tets, tets[uz(p)], model_.tet_region, longest_fan);
+      rings[uz(p)] = cut_into_edge_rings(model_.tets, tets[uz(p)], model_.tet_region, longest_ring);
     });
     for (std::size_t p = 0; p < patches; ++p) {
       begin_patch(static_cast<Index>(p));
-      group_by_length(std::move(fans[p]), [&](std::size_t length, std::span<const EdgeRing> group) {
-        make_room();
-        pack_fans(length, group);
-      });
+      group_by_length(std::move(rings[p]),
+                      [&](std::size_t length, std::span<const EdgeRing> group) {
+                        make_room();
+                        pack_rings(length, group);
+                      });
       pack_springs(springs[p]);
       end_patch();
     }
@@ -93,7 +94,7 @@ class Packer {
     packed_of_.assign(model_.rest_position.size(), -1);
     patch_of_.assign(model_.rest_position.size(), -1);
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      to_.triads_.push_back(triad_of(model_, model_.bodies[b]));
+      to_.frame_nodes_.push_back(frame_nodes_of(model_, model_.bodies[b]));
       order_nodes_of(model_.bodies[b].nodes, static_cast<Index>(b));
     }
     order_nodes_of({model_.body_node_count(), model_.node_count()}, -1);
@@ -147,15 +148,16 @@ class Packer {
     patch.slots.begin = size(to_.slot_node_);
     for (Index n = patch.nodes.begin; n < patch.nodes.end; ++n) add_slot(n, free_cell);
     patch.first_tet = size(to_.tet_id_);
-    patch.fans = {{size(to_.fan_length_), 0}, size(to_.fan_corner_), size(to_.fan_data_)};
-    patch.stars = {{size(to_.star_length_), 0}, size(to_.star_corner_), size(to_.star_data_)};
+    patch.rings = {{size(to_.ring_length_), 0}, size(to_.ring_corner_), size(to_.ring_data_)};
+    patch.one_rings = {
+        {size(to_.one_ring_length_), 0}, size(to_.one_ring_corner_), size(to_.one_ring_data_)};
   }
 
   void end_patch() {
     PackedForces::Patch& patch = to_.patches_[uz(patch_)];
     patch.slots.end = size(to_.slot_node_);
-    patch.fans.groups.end = size(to_.fan_length_);
-    patch.stars.groups.end = size(to_.star_length_);
+    patch.rings.groups.end = size(to_.ring_length_);
+    patch.one_rings.groups.end = size(to_.one_ring_length_);
     std::replace(to_.slot_cell_.begin() + patch.slots.begin, to_.slot_cell_.end(), free_cell, -1);
   }
 
@@ -211,43 +213,43 @@ class Packer {
 
   // --- tets ---
 
-  void pack_fans(std::size_t length, std::span<const EdgeRing> fans) {
-    to_.fan_length_.push_back(static_cast<std::uint8_t>(length));
+  void pack_rings(std::size_t length, std::span<const EdgeRing> rings) {
+    to_.ring_length_.push_back(static_cast<std::uint8_t>(length));
     const auto& X = model_.rest_position;
-    const std::size_t corner = to_.fan_corner_.size();
-    to_.fan_corner_.resize(corner + (length + 3) * uz(packed_lanes), 0);
+    const std::size_t corner = to_.ring_corner_.size();
+    to_.ring_corner_.resize(corner + (length + 3) * uz(packed_lanes), 0);
     const auto put_corner = [&](std::size_t c, std::size_t lane, Index node, std::size_t tet) {
       const auto& nodes = model_.tets[tet];
       const auto a =
           static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
-      to_.fan_corner_[corner + c * uz(packed_lanes) + lane] = slot(node, model_.cells[tet][a]);
+      to_.ring_corner_[corner + c * uz(packed_lanes) + lane] = slot(node, model_.cells[tet][a]);
     };
-    Fields head(to_.fan_data_, fan_head_fields);
-    for (std::size_t lane = 0; lane < fans.size(); ++lane) {
-      const EdgeRing& fan = fans[lane];
-      const auto t = uz(fan.tets[0]);
-      const Vec3& origin = X[uz(fan.axis[0])];
-      for (std::size_t e = 0; e < 2; ++e) put_corner(e, lane, fan.axis[e], t);
-      put_corner(2, lane, fan.nodes[0], t);
-      head.put(0, lane, X[uz(fan.axis[1])] - origin);
-      head.put(3, lane, X[uz(fan.nodes[0])] - origin);
+    Fields head(to_.ring_data_, ring_head_fields);
+    for (std::size_t lane = 0; lane < rings.size(); ++lane) {
+      const EdgeRing& ring = rings[lane];
+      const auto t = uz(ring.tets[0]);
+      const Vec3& origin = X[uz(ring.axis[0])];
+      for (std::size_t e = 0; e < 2; ++e) put_corner(e, lane, ring.axis[e], t);
+      put_corner(2, lane, ring.nodes[0], t);
+      head.put(0, lane, X[uz(ring.axis[1])] - origin);
+      head.put(3, lane, X[uz(ring.nodes[0])] - origin);
       head.put(6, lane, model_.tet_shear[t] / 6.0);
       head.put(7, lane, model_.tet_bulk[t]);
       head.put(8, lane, model_.tet_bulk[t] > 0.0 ? 0.0 : model_.tet_modulus[t]);
     }
     for (std::size_t k = 0; k < length; ++k) {
-      Fields fields(to_.fan_data_, fan_tet_fields);
+      Fields fields(to_.ring_data_, ring_tet_fields);
       to_.tet_id_.resize(to_.tet_id_.size() + uz(packed_lanes), -1);
-      for (std::size_t lane = 0; lane < fans.size(); ++lane) {
-        const EdgeRing& fan = fans[lane];
-        const auto t = uz(fan.tets[k]);
-        put_corner(k + 3, lane, fan.nodes[k + 1], t);
-        fields.put(0, lane, X[uz(fan.nodes[k + 1])] - X[uz(fan.axis[0])]);
+      for (std::size_t lane = 0; lane < rings.size(); ++lane) {
+        const EdgeRing& ring = rings[lane];
+        const auto t = uz(ring.tets[k]);
+        put_corner(k + 3, lane, ring.nodes[k + 1], t);
+        fields.put(0, lane, X[uz(ring.nodes[k + 1])] - X[uz(ring.axis[0])]);
         fields.put(3, lane, 1.0 / model_.rest_volume[t]);
         double weights = 0.0;
         for (const Index c : model_.cells[t]) weights += c >= 0 ? weight_[uz(c)] : 0.0;
         if (weights > 0.0) fields.put(4, lane, 1.0 / weights);
-        to_.tet_id_[to_.tet_id_.size() - uz(packed_lanes) + lane] = fan.tets[k];
+        to_.tet_id_[to_.tet_id_.size() - uz(packed_lanes) + lane] = ring.tets[k];
       }
     }
   }
@@ -263,40 +265,41 @@ class Packer {
     std::stable_sort(springs.begin(), springs.end(), [&](Index s, Index t) {
       return packed_of_[uz(centre_of(s))] < packed_of_[uz(centre_of(t))];
     });
-    std::vector<Star> list;
+    std::vector<OneRing> list;
     for (const Index s : springs) {
       const Index centre = centre_of(s);
-      if (list.empty() || list.back().centre != centre || list.back().length() == longest_star) {
+      if (list.empty() || list.back().centre != centre ||
+          list.back().length() == longest_one_ring) {
         list.push_back({centre, {}});
       }
       list.back().springs.push_back(s);
     }
-    group_by_length(std::move(list), [&](std::size_t length, std::span<const Star> group) {
+    group_by_length(std::move(list), [&](std::size_t length, std::span<const OneRing> group) {
       make_room();
-      pack_stars(length, group);
+      pack_one_rings(length, group);
     });
   }
 
-  void pack_stars(std::size_t length, std::span<const Star> stars) {
-    to_.star_length_.push_back(static_cast<std::uint8_t>(length));
-    const std::size_t corner = to_.star_corner_.size();
-    to_.star_corner_.resize(corner + (length + 1) * uz(packed_lanes), 0);
-    for (std::size_t lane = 0; lane < stars.size(); ++lane) {
-      to_.star_corner_[corner + lane] = slot(stars[lane].centre);
+  void pack_one_rings(std::size_t length, std::span<const OneRing> one_rings) {
+    to_.one_ring_length_.push_back(static_cast<std::uint8_t>(length));
+    const std::size_t corner = to_.one_ring_corner_.size();
+    to_.one_ring_corner_.resize(corner + (length + 1) * uz(packed_lanes), 0);
+    for (std::size_t lane = 0; lane < one_rings.size(); ++lane) {
+      to_.one_ring_corner_[corner + lane] = slot(one_rings[lane].centre);
     }
     for (std::size_t k = 0; k < length; ++k) {
-      Fields fields(to_.star_data_, star_spring_fields);
+      Fields fields(to_.one_ring_data_, one_ring_spring_fields);
       for (std::size_t lane = 0; lane < uz(packed_lanes); ++lane) {
-        if (lane >= stars.size()) {  // a spring of length 1 without stiffness
+        if (lane >= one_rings.size()) {  // a spring of length 1 without stiffness
           fields.put(0, lane, 1.0);
           continue;
         }
-        const Star& star = stars[lane];
-        const auto s = uz(star.springs[k]);
+        const OneRing& one_ring = one_rings[lane];
+        const auto s = uz(one_ring.springs[k]);
         const auto [i, j] = model_.springs[s];
-        const Index other = i == star.centre ? j : i;
-        to_.star_corner_[corner + (k + 1) * uz(packed_lanes) + lane] = slot(other);
-        const Vec3 x = model_.rest_position[uz(other)] - model_.rest_position[uz(star.centre)];
+        const Index other = i == one_ring.centre ? j : i;
+        to_.one_ring_corner_[corner + (k + 1) * uz(packed_lanes) + lane] = slot(other);
+        const Vec3 x = model_.rest_position[uz(other)] - model_.rest_position[uz(one_ring.centre)];
         const double l0 = model_.rest_length[s];
         fields.put(0, lane, x);
         fields.put(3, lane, (x.norm() - l0) * (x.norm() + l0));
@@ -394,13 +397,13 @@ class Packer {
   void allocate_scratch() {
     const std::size_t nodes = to_.node_of_.size();
     const std::size_t slots = to_.slot_node_.size();
-    to_.frames_.resize(to_.triads_.size());
+    to_.frames_.resize(to_.frame_nodes_.size());
     to_.displacement_.assign(4 * nodes, 0.0f);
     to_.slot_displacement_.assign(4 * slots, 0.0f);
     to_.slot_force_.assign(4 * slots, 0.0f);
     to_.tet_change_.assign(to_.tet_id_.size(), 0.0f);
     to_.cell_pressure_.assign(uz(model_.cell_count()), 0.0f);
-    if (to_.star_length_.empty()) return;
+    if (to_.one_ring_length_.empty()) return;
     to_.velocity_.assign(4 * nodes, 0.0f);
     to_.slot_velocity_.assign(4 * slots, 0.0f);
   }

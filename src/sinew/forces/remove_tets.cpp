@@ -110,7 +110,7 @@ void copy_attachments(const Model& from, Model& to, const TopologyChange& change
 
 void copy_surroundings(const Model& from, Model& to, const TopologyChange& change) {
   to.start_gravity = from.start_gravity;
-  to.touch = from.touch;
+  to.body_contact = from.body_contact;
   to.limit_sweeps = from.limit_sweeps;
   to.limit_tolerance = from.limit_tolerance;
   for (const Pin& pin : from.pins)

@@ -21,7 +21,7 @@ struct CutModel {
 // are those of `model`.
 //
 // The surfaces for contact (Model::skin, Model::surface) must be those of the new mesh: they are
-// left empty and contact/touch_surface.h rebuilds them.
+// left empty and contact/contact_surface.h rebuilds them.
 //
 // Throws Error(input) if a body would have no tet left, and Error(usage) if a tet id is out of
 // range or the bodies are not those of the model.

@@ -10,7 +10,7 @@
 namespace sinew {
 
 // The force of a spring on its ends.
-struct SpringPull {
+struct SpringForce {
   Vec3 force = Vec3::Zero();  // on end i [N]; end j gets its negative
   double heat = 0.0;          // power that the dashpot turns into heat, c (v_ij . n)^2 [W]
 };
@@ -18,7 +18,7 @@ struct SpringPull {
 //   f = k (|x_ij| - l0) x_ij / |x_ij| + c ((v_ij . x_ij) / (x_ij . x_ij)) x_ij
 // x_ij = x_j - x_i [m], v_ij = v_j - v_i [m/s], k [N/m], l0 [m], c [N s/m].
 // Ends that coincide have no direction: no force.
-inline SpringPull spring_pull(const Vec3& x_ij, const Vec3& v_ij, double k, double l0, double c) {
+inline SpringForce spring_force(const Vec3& x_ij, const Vec3& v_ij, double k, double l0, double c) {
   const double length2 = x_ij.squaredNorm();
   if (length2 == 0.0) return {};
   const double inverse2 = 1.0 / length2;  // one division: it costs more than the rest
@@ -29,7 +29,7 @@ inline SpringPull spring_pull(const Vec3& x_ij, const Vec3& v_ij, double k, doub
 }
 
 // The same for a dashpot alone: no square root.
-inline SpringPull dashpot_pull(const Vec3& x_ij, const Vec3& v_ij, double c) {
+inline SpringForce dashpot_force(const Vec3& x_ij, const Vec3& v_ij, double c) {
   const double length2 = x_ij.squaredNorm();
   if (length2 == 0.0) return {};
   const double along = v_ij.dot(x_ij);

@@ -20,11 +20,11 @@ double compute_spring_forces(const Model& model, const State& state, std::vector
             const Vec3 x_ij = state.position[c] - state.position[a];
             const Vec3 v_ij = state.half_velocity[c] - state.half_velocity[a];
             const double k = model.stiffness[s];
-            const SpringPull pull =
-                k == 0.0 ? dashpot_pull(x_ij, v_ij, model.damping[s])
-                         : spring_pull(x_ij, v_ij, k, model.rest_length[s], model.damping[s]);
-            force[s] = pull.force;
-            heat += pull.heat;
+            const SpringForce spring =
+                k == 0.0 ? dashpot_force(x_ij, v_ij, model.damping[s])
+                         : spring_force(x_ij, v_ij, k, model.rest_length[s], model.damping[s]);
+            force[s] = spring.force;
+            heat += spring.heat;
           }
           return heat;
         },

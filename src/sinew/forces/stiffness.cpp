@@ -63,7 +63,7 @@ void TangentProduct::sum(const Configuration& at, std::span<const Vec3> of_tets,
     out[n] = Vec3::Zero();
     if (model.inverse_mass[n] == 0.0) return;
     out[n] = outer.of(i) - gather_springs(model, spring_force_, i);
-    if (network) out[n] -= a * network_pull(model, u, i);
+    if (network) out[n] -= a * network_force(model, u, i);
     if (!of_tets.empty()) out[n] -= gather_tets(model, of_tets, i);
   });
   if (a != 0.0) add_term_products(at, tangent, a, u, out);

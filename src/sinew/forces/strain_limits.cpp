@@ -28,9 +28,9 @@ LimitSweep project(const Model& model, std::size_t s, std::vector<Vec3>& x) {
   if (length == 0.0 || !(over || exact)) return {};
   const double w_i = model.inverse_mass[i];
   const double w_j = model.inverse_mass[j];
-  const Vec3 pull = (excess / (length * (w_i + w_j))) * x_ij;
-  x[i] += w_i * pull;
-  x[j] -= w_j * pull;
+  const Vec3 correction = (excess / (length * (w_i + w_j))) * x_ij;
+  x[i] += w_i * correction;
+  x[j] -= w_j * correction;
   return {1, over ? 1 : 0};
 }
 

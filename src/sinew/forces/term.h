@@ -34,7 +34,7 @@ enum class Account {
 enum class Tangent { full, only_stiffening };
 
 // A part of the tangent, K_ab = w_a w_b B for any two of its nodes. A spring has the weights 1 and
-// -1; a pull towards a fixed point has one node of weight 1.
+// -1; a force towards a fixed point has one node of weight 1.
 struct Element {
   std::span<const Index> nodes;
   std::span<const double> weights;  // [-] (nodes)
@@ -116,12 +116,13 @@ template <Term T>
 void add_stiffness_times(T, const Configuration& at, Tangent tangent, double a,
                          std::span<const Vec3> u, std::span<Vec3> out) {
   T::for_each_element(at, tangent, [&](const Element& e) {
-    Vec3 way = Vec3::Zero();
-    for (std::size_t k = 0; k < e.nodes.size(); ++k) way += e.weights[k] * u[uz(e.nodes[k])];
-    const Vec3 push = Mat3(a * e.block) * way;
+    Vec3 displacement = Vec3::Zero();
+    for (std::size_t k = 0; k < e.nodes.size(); ++k)
+      displacement += e.weights[k] * u[uz(e.nodes[k])];
+    const Vec3 force = Mat3(a * e.block) * displacement;
     for (std::size_t k = 0; k < e.nodes.size(); ++k) {
       const auto n = uz(e.nodes[k]);
-      if (at.model.inverse_mass[n] > 0.0) out[n] += e.weights[k] * push;
+      if (at.model.inverse_mass[n] > 0.0) out[n] += e.weights[k] * force;
     }
   });
 }

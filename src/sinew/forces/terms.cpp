@@ -35,12 +35,12 @@ std::vector<Vec3> synchronous_velocity(const Model& model, const State& state,
     v[k] += (0.5 * state.last_step * model.inverse_mass[k]) * force[k];
   });
   // Nodes at rest on a support are held by it.
-  std::vector<NodeHold> held;
+  std::vector<NodeHold> holds;
   std::vector<Vec3> sum;
-  warm_start(state, force, sum, held);
-  for (const NodeHold& hold : held) {
+  warm_start(state, force, sum, holds);
+  for (const NodeHold& hold : holds) {
     const auto k = uz(hold.node);
-    v[k] += (0.5 * state.last_step * model.inverse_mass[k] * hold.share) * hold.push;
+    v[k] += (0.5 * state.last_step * model.inverse_mass[k] * hold.share) * hold.force;
   }
   return v;
 }

@@ -33,9 +33,9 @@ struct TieTerm {
   }
   static void add_forces(const Configuration& at, std::span<Vec3> forces) {
     for (const Tie& tie : at.model.ties) {
-      const Vec3 pull = tie.stiffness * tie_offset(tie, at.x);
+      const Vec3 force = tie.stiffness * tie_offset(tie, at.x);
       for (std::size_t a = 0; a < tie.node.size(); ++a)
-        forces[uz(tie.node[a])] -= tie.weight[a] * pull;
+        forces[uz(tie.node[a])] -= tie.weight[a] * force;
     }
   }
   template <class F>

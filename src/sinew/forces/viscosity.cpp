@@ -105,10 +105,10 @@ inline CellGradient cell_gradient(const Model& model, std::span<const Vec3> x,
   for (++s; s < end; ++s) {
     const auto node = uz(model.viscous_node[s]);
     const Vec3 g = model.viscous_gradient[s];
-    const Vec3 way = x[node] - x0;
+    const Vec3 offset = x[node] - x0;
     const Vec3 speed = v[node] - v0;
     for (int c = 0; c < 3; ++c) {
-      sum.F.col(c) += g[c] * way;
+      sum.F.col(c) += g[c] * offset;
       sum.F_rate.col(c) += g[c] * speed;
     }
   }

@@ -77,7 +77,7 @@ inline Vec3 press_tets(const Model& model, std::span<const Corners> gradient,
 }
 
 // -sum_t s_t dv_t/dx_i over the node's tets in their fixed order: the force on it [N].
-inline Vec3 push_of_tets(const Model& model, const TetState& tets, Index node) {
+inline Vec3 volume_force(const Model& model, const TetState& tets, Index node) {
   return -press_tets(model, tets.gradient, tets.pressure, node);
 }
 

@@ -18,7 +18,7 @@ double dot(const CellField& a, const CellField& b) {
 // measure() sets c to V_c(x) - V_c of the limited cells [m3].
 struct Violation {
   double change = 0.0;  // largest |J_c - 1|
-  bool met = true;
+  bool within = true;
 };
 Violation measure(const Model& model, const TetVolumes& tets, CellField& c) {
   parallel_for(model.cell_count(),
@@ -32,7 +32,7 @@ Violation measure(const Model& model, const TetVolumes& tets, CellField& c) {
     c[i] -= model.cell_volume[i];
     const double change = std::abs(c[i]) / model.cell_volume[i];
     v.change = std::max(v.change, change);
-    v.met = v.met && change <= model.volume_limit[i];
+    v.within = v.within && change <= model.volume_limit[i];
   }
   return v;
 }
@@ -91,7 +91,7 @@ VolumeLimitReport VolumeLimit::enforce(const Model& model, std::vector<Vec3>& x,
   std::vector<Vec3> u(x.size());
   tets_ = compute_tet_volumes(model, x, std::move(tets_));
   Violation v = measure(model, tets_, c);
-  while (!v.met && report.projections < most) {
+  while (!v.within && report.projections < most) {
     ++report.projections;
     const CellField diagonal = measure_diagonal(model, tets_);
     const auto scale = [&] {
@@ -123,7 +123,7 @@ VolumeLimitReport VolumeLimit::enforce(const Model& model, std::vector<Vec3>& x,
     tets_ = compute_tet_volumes(model, x, std::move(tets_));
     v = measure(model, tets_, c);
   }
-  report.met = v.met;
+  report.within = v.within;
   report.change = v.change;
   return report;
 }

@@ -12,7 +12,7 @@ namespace sinew {
 struct VolumeLimitReport {
   int projections = 0;  // Newton steps of the projection
   int products = 0;     // conjugate gradient iterations in them
-  bool met = true;      // every limited cell is within its limit
+  bool within = true;   // every limited cell is within its limit
   double change = 0.0;  // largest |J_c - 1| over the limited cells, at the end [-]
 };
 

@@ -44,18 +44,18 @@ void require_point(const Vec3& point) {
 
 }  // namespace
 
-void Session::act(const Play& c) {
+void Session::execute(const Play& c) {
   running_ = c.running;
 }
 
-void Session::act(const Advance& c) {
+void Session::execute(const Advance& c) {
   running_ = false;
   if (!c.frame) return take_step();
   while (!advance(Clock::now() + std::chrono::seconds(1)) && error_.empty()) {
   }
 }
 
-void Session::act(const Reset&) {
+void Session::execute(const Reset&) {
   world().reset();
   grabs_ = {};
   ball_ = {};
@@ -63,7 +63,7 @@ void Session::act(const Reset&) {
 }
 
 // The current scene stays unchanged until the new one is built.
-void Session::act(const Load& c) {
+void Session::execute(const Load& c) {
   const bool behind = std::exchange(fell_behind_, false);
   try {
     simulation_ = simulate(c.scene);
@@ -89,7 +89,7 @@ void Session::show(const Cut& cut, bool springs) {
   remember_parameters();
 }
 
-void Session::act(const SetCut& c) {
+void Session::execute(const SetCut& c) {
   require_point(c.cut.normal);
   if (!std::isfinite(c.cut.offset)) {
     throw Error(ErrorKind::usage, "the offset is no finite number", "give it in metres");
@@ -97,11 +97,11 @@ void Session::act(const SetCut& c) {
   show(c.cut, springs_);
 }
 
-void Session::act(const SetSprings& c) {
+void Session::execute(const SetSprings& c) {
   show(cut_, c.shown);
 }
 
-void Session::act(const SaveState& c) {
+void Session::execute(const SaveState& c) {
   c.done(format_frame(model(), world().run(), force(), io::VtuEncoding::zlib));
 }
 
@@ -129,13 +129,13 @@ std::vector<std::string> material_overrides(const Scene& scene, const SetMateria
 }
 }  // namespace
 
-void Session::act(const SetMaterial& c) {
+void Session::execute(const SetMaterial& c) {
   require_key(material_keys, c.key);
   require_plain(c.value);
   change(material_overrides(world().scene(), c));
 }
 
-void Session::act(const SetStepping& c) {
+void Session::execute(const SetStepping& c) {
   require_key(keys_of_steps, c.key);
   require_plain(c.value);
   if (c.key != "stepper" || c.value != "live") return change({c.key + "=" + c.value});
@@ -144,7 +144,7 @@ void Session::act(const SetStepping& c) {
   changed();
 }
 
-void Session::act(const SetGravity& c) {
+void Session::execute(const SetGravity& c) {
   if (!c.gravity.allFinite() || c.gravity.norm() > 1e4) {
     throw Error(ErrorKind::usage, "gravity is not within 1e4 m/s2", "the earth's is 9.81 m/s2");
   }
@@ -152,14 +152,14 @@ void Session::act(const SetGravity& c) {
   remember_parameters();
 }
 
-void Session::act(const SetTimeScale& c) {
+void Session::execute(const SetTimeScale& c) {
   if (!(c.scale >= 1e-3 && c.scale <= 100.0)) {
     throw Error(ErrorKind::usage, "the time scale is not from 0.001 to 100", "1 is real time");
   }
   time_scale_ = c.scale;
 }
 
-void Session::act(const SetQuantity& c) {
+void Session::execute(const SetQuantity& c) {
   quantity_ = c.quantity;
 }
 
@@ -170,7 +170,7 @@ void require_hand(int hand) {
 }
 }  // namespace
 
-void Session::act(const Grab& c) {
+void Session::execute(const Grab& c) {
   require_hand(c.hand);
   require_point(c.point);
   if (c.node < 0 || uz(c.node) >= topology_->node.size()) {
@@ -186,18 +186,18 @@ void Session::act(const Grab& c) {
               c.radius > 0.0 ? c.radius : usual);
 }
 
-void Session::act(const Drag& c) {
+void Session::execute(const Drag& c) {
   require_hand(c.hand);
   require_point(c.point);
   grabs_.drag(world(), c.hand, c.point, size());
 }
 
-void Session::act(const Release& c) {
+void Session::execute(const Release& c) {
   require_hand(c.hand);
   grabs_.release(world(), c.hand);
 }
 
-void Session::act(const MoveBall& c) {
+void Session::execute(const MoveBall& c) {
   require_point(c.point);
   if (!(c.radius >= 0.0 && c.radius <= 10.0 * size())) {
     throw Error(ErrorKind::usage, "the radius is not from 0 to ten times the body's size",
@@ -207,7 +207,7 @@ void Session::act(const MoveBall& c) {
   ball_.move(world(), c.point, c.radius > 0.0 ? c.radius : usual);
 }
 
-void Session::act(const RemoveBall&) {
+void Session::execute(const RemoveBall&) {
   ball_.remove(world());
 }
 

@@ -28,7 +28,7 @@ const Tool& tool_of(const sim::World& world, sim::ToolHandle handle) {
 }  // namespace
 
 // The largest stiffness with which no node shortens the stable step, at most that of `hardness`.
-double Ball::pressure(const sim::World& world) const {
+double Ball::stiffness_for(const sim::World& world) const {
   const Model& model = world.model();
   const double stable_step = world.run().memory.stable_step;
   double k = hardness * largest_modulus(model) / wished_radius_;
@@ -44,7 +44,7 @@ double Ball::pressure(const sim::World& world) const {
 void Ball::move(sim::World& world, const Vec3& point, double radius) {
   wished_ = point;
   wished_radius_ = radius;
-  if (!tool_) tool_ = world.add_tool(point, smallest * radius, pressure(world));
+  if (!tool_) tool_ = world.add_tool(point, smallest * radius, stiffness_for(world));
   hold(world);
 }
 
@@ -62,13 +62,13 @@ void Ball::follow(sim::World& world, double interval, double size) {
   const Vec3 there = to_go.norm() <= most ? wished_ : Vec3(here + most / to_go.norm() * to_go);
   const double growth = wished_radius_ * interval / growing_time;
   const double radius = std::clamp(wished_radius_, ball.radius - growth, ball.radius + growth);
-  world.lead(*tool_, there, interval);
+  world.move(*tool_, there, interval);
   world.reshape(*tool_, radius, stiffness_);
 }
 
 void Ball::hold(sim::World& world) {
   if (!tool_) return;
-  stiffness_ = pressure(world);
+  stiffness_ = stiffness_for(world);
   world.reshape(*tool_, tool_of(world, *tool_).radius, stiffness_);
 }
 

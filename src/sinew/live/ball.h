@@ -32,7 +32,7 @@ class Ball {
   std::optional<SphereStatus> status(const sim::World& world) const;
 
  private:
-  double pressure(const sim::World& world) const;
+  double stiffness_for(const sim::World& world) const;
 
   std::optional<sim::ToolHandle> tool_;  // none: the ball is not there
   Vec3 wished_ = Vec3::Zero();           // [m]

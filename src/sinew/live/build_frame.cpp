@@ -10,7 +10,7 @@ namespace sinew::live {
 namespace {
 
 // Largest distance of two bodies in contact, as a share of the bodies' size.
-constexpr double touch = 1e-5;
+constexpr double contact_share = 1e-5;
 
 // Least weight of a marked node: each contact marks at least one corner of its triangle.
 constexpr double bears = 0.33;
@@ -36,25 +36,25 @@ std::vector<std::uint8_t> find_contacts(const Model& model, const Controls& cont
   parallel_for(static_cast<Index>(marks.size()), [&](Index i) {
     const auto n = uz(topology.node[uz(i)]);
     const Vec3& x = state.position[n];
-    bool touches = false;
+    bool in_contact = false;
     const bool on_surface = n < model.surface_share.size() && model.surface_share[n] > 0.0;
     for (std::size_t s = 0; s < spheres.size() && on_surface; ++s)
-      touches = touches || (x - spheres[s].center).norm() < spheres[s].radius;
-    marks[uz(i)] = touches ? 1 : 0;
+      in_contact = in_contact || (x - spheres[s].center).norm() < spheres[s].radius;
+    marks[uz(i)] = in_contact ? 1 : 0;
   });
   if (finder != nullptr) {
     const double reach =
-        std::max(touch * static_cast<double>(topology.diagonal), finder->explicit_reach());
+        std::max(contact_share * static_cast<double>(topology.diagonal), finder->explicit_reach());
     std::vector<Contact> contacts;
     finder->find(controls, state.position, state.position, state.time, state.time, reach, contacts);
-    std::vector<std::uint8_t> touched(model.rest_position.size(), 0);
+    std::vector<std::uint8_t> node_in_contact(model.rest_position.size(), 0);
     for (const Contact& c : contacts) {
       for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) {
-        if (std::abs(c.weight[a]) >= bears) touched[uz(c.node[a])] = 1;
+        if (std::abs(c.weight[a]) >= bears) node_in_contact[uz(c.node[a])] = 1;
       }
     }
     for (std::size_t i = 0; i < marks.size(); ++i)
-      marks[i] = static_cast<std::uint8_t>(marks[i] | touched[uz(topology.node[i])]);
+      marks[i] = static_cast<std::uint8_t>(marks[i] | node_in_contact[uz(topology.node[i])]);
   }
   if (std::find(marks.begin(), marks.end(), 1) == marks.end()) return {};
   return marks;

@@ -18,7 +18,7 @@ std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& 
 
 // 1 for every node shown that touches an obstacle, a tool, the ground, another body or its own;
 // empty where none does. Of a contact those nodes that bear at least a third of it: both sides have
-// one. `finder`: of the model; null where only soft spheres can touch.
+// one. `finder`: of the model; null where there are only soft spheres.
 std::vector<std::uint8_t> find_contacts(const Model& model, const Controls& controls,
                                         const State& state, const Topology& topology,
                                         ContactFinder* finder);

@@ -32,11 +32,11 @@ Scene with_law(const Scene& scene, const LawChoice& law) {
 
 }  // namespace
 
-void Session::act(const SetCompare& c) {
+void Session::execute(const SetCompare& c) {
   if (c.law.empty()) {
     other_.reset();
     compare_.clear();
-    ahead_ = false;
+    frame_finished_ = false;
     remember_parameters();
     return;
   }
@@ -47,23 +47,23 @@ void Session::act(const SetCompare& c) {
   }
   std::unique_ptr<Session> other(new Session(with_law(world().current_scene(), *law), this));
   other_.reset();
-  // Both start anew from this state, so with the same law they take the same steps.
+  // Both restart from this state, so with the same law they take the same steps.
   world().choose_steps();
   changed();
-  other->world().go_on_from(world());
+  other->world().continue_from(world());
   other->grabs_ = grabs_.in(other->world());
   other->ball_ = ball_.in(other->world());
   other->changed();
   other->topology_ = topology_;
   other_ = std::move(other);
   compare_ = c.law;
-  ahead_ = false;
+  frame_finished_ = false;
   note_pair();
   remember_parameters();
 }
 
 // Passes a command on if it concerns both bodies. If the second body cannot follow, it is removed.
-void Session::tell_other(const Command& command) {
+void Session::forward_to_compared(const Command& command) {
   try {
     std::visit(
         [&](const auto& c) {
@@ -74,37 +74,37 @@ void Session::tell_other(const Command& command) {
                                    std::is_same_v<C, Drag> || std::is_same_v<C, Release> ||
                                    std::is_same_v<C, MoveBall> || std::is_same_v<C, RemoveBall>;
           if constexpr (std::is_same_v<C, SetMaterial>) {
-            if (!is_of_law(c)) other_->act(c);
+            if (!is_of_law(c)) other_->execute(c);
           } else if constexpr (of_both) {
-            other_->act(c);
+            other_->execute(c);
           }
           if constexpr (std::is_same_v<C, Reset>) note_pair();
         },
         command);
   } catch (const Error& e) {
-    act(SetCompare{});
+    execute(SetCompare{});
     report(Error(e.kind(), "the compared body: " + e.message(), e.remedy(), e.location()));
   }
 }
 
 // Steps the second body to the time of the first. Returns false if no time is left for it.
-bool Session::catch_up(Clock::time_point deadline, const std::atomic<bool>* hurry) {
+bool Session::catch_up(Clock::time_point deadline, const std::atomic<bool>* interrupted) {
   if (!other_) return true;
   const std::uint32_t errors = other_->errors_;
   const double close = 1e-9 * std::max(1.0, time());
   while (other_->time() < time() - close) {
     // The rest of a frame if the first body has finished it, a step if it has taken one.
-    const bool finished = other_->steps(deadline, hurry, !ahead_);
+    const bool finished = other_->steps(deadline, interrupted, !frame_finished_);
     if (other_->errors_ != errors) {
       const std::string what = other_->error_;
-      act(SetCompare{});
+      execute(SetCompare{});
       running_ = false;
       report(Error(ErrorKind::diverged, "the compared body: " + what));
       return true;
     }
-    if (ahead_ && !finished) return false;
+    if (frame_finished_ && !finished) return false;
   }
-  if (ahead_) {
+  if (frame_finished_) {
     other_->grabs_.follow(other_->world(), size());
     other_->ball_.follow(other_->world(), 1.0 / frames_per_second, size());
   }

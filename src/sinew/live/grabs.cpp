@@ -14,10 +14,12 @@ void Grabs::grab(sim::World& world, int hand, Index node, const Vec3& point, dou
 
 void Grabs::approach(sim::World& world, const Hand& hand, double size) {
   const Vec3 target = world.target(hand.grab);
-  const Vec3 way = hand.point - target;
-  if (way.isZero(0.0)) return;
+  const Vec3 displacement = hand.point - target;
+  if (displacement.isZero(0.0)) return;
   const double most = pace * size;
-  world.move(hand.grab, way.norm() <= most ? hand.point : Vec3(target + most / way.norm() * way));
+  world.move(hand.grab, displacement.norm() <= most
+                            ? hand.point
+                            : Vec3(target + most / displacement.norm() * displacement));
 }
 
 void Grabs::drag(sim::World& world, int hand, const Vec3& point, double size) {
@@ -53,7 +55,7 @@ std::vector<HandStatus> Grabs::status(const sim::World& world) const {
   std::vector<HandStatus> out;
   for (int i = 0; i < most_hands; ++i)
     if (const std::optional<Hand>& h = hands_[uz(i)])
-      out.push_back({i, world.held_at(h->grab), h->point, world.pull(h->grab)});
+      out.push_back({i, world.unloaded_target(h->grab), h->point, world.force(h->grab)});
   return out;
 }
 

@@ -104,7 +104,7 @@ bool Runner::post(Command command) {
     } else {
       return false;
     }
-    if (of_hand) hurry_ = true;
+    if (of_hand) interrupted_ = true;
   }
   wake_.notify_one();
   return true;
@@ -142,7 +142,7 @@ void Runner::work() {
       }
       if (quit_) return;
       commands.swap(commands_);
-      hurry_ = false;
+      interrupted_ = false;
     }
     const double before = session_.time();
     if (!commands.empty()) apply(commands);
@@ -155,10 +155,10 @@ void Runner::work() {
       }
       // A command woke the thread before the frame was due: the frame is shown at its time.
       if (Clock::now() < pace.due(session_.time())) continue;
-      session_.advance(Clock::now() + longest_slice, &hurry_);
+      session_.advance(Clock::now() + longest_slice, &interrupted_);
       pace.note(session_.time(), rate_);
       // Hands that never stop moving must not prevent frames from being shown.
-      if (hurry_ && Clock::now() - published_at_ < longest_slice) continue;
+      if (interrupted_ && Clock::now() - published_at_ < longest_slice) continue;
       if (!session_.running()) status_at_ = {};
     }
     publish();
@@ -176,7 +176,7 @@ void Runner::publish() {
     Status status = session_.status();
     status.rate = rate_;
     if (status.limit.empty() && rate_ > 0.0 && rate_ < 0.9 * status.time_scale) {
-      status.limit = "the machine has other things to do as well";
+      status.limit = "the processor is busy with other work";
     }
     next.status = std::make_shared<Status>(std::move(status));
     status_at_ = now;

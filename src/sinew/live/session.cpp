@@ -73,8 +73,8 @@ Simulation Session::simulate(const Scene& scene) const {
 
 void Session::apply(const Command& command) {
   if (!std::holds_alternative<Drag>(command)) error_.clear();
-  std::visit([&](const auto& c) { act(c); }, command);
-  if (other_) tell_other(command);
+  std::visit([&](const auto& c) { execute(c); }, command);
+  if (other_) forward_to_compared(command);
 }
 
 void Session::report(const Error& error) {
@@ -107,7 +107,7 @@ SteppingOptions Session::options_for(const Scene& scene) const {
 // Called after a change of the model or of its steps.
 void Session::changed() {
   ball_.hold(world());
-  ahead_ = false;
+  frame_finished_ = false;
   speed_ = last_speed_ = {};
   remember_parameters();
 }
@@ -154,10 +154,10 @@ void Session::take_step() {
   catch_up(Clock::time_point::max(), nullptr);
 }
 
-bool Session::advance(Clock::time_point deadline, const std::atomic<bool>* hurry) {
-  if (!ahead_) ahead_ = steps(deadline, hurry, false);
-  if (!ahead_ || !catch_up(deadline, hurry)) return false;
-  ahead_ = false;
+bool Session::advance(Clock::time_point deadline, const std::atomic<bool>* interrupted) {
+  if (!frame_finished_) frame_finished_ = steps(deadline, interrupted, false);
+  if (!frame_finished_ || !catch_up(deadline, interrupted)) return false;
+  frame_finished_ = false;
   grabs_.follow(world(), size());
   ball_.follow(world(), world().stepping().frame_interval(), size());
   keep_pace();
@@ -178,7 +178,8 @@ void Session::keep_pace() {
   }
 }
 
-bool Session::steps(Clock::time_point deadline, const std::atomic<bool>* hurry, bool only_one) {
+bool Session::steps(Clock::time_point deadline, const std::atomic<bool>* interrupted,
+                    bool only_one) {
   const Clock::time_point start = Clock::now();
   const RunState& run = world().run();
   const double time = run.state.time;
@@ -187,7 +188,7 @@ bool Session::steps(Clock::time_point deadline, const std::atomic<bool>* hurry, 
   const std::int64_t products = run.products;
   bool finished = false;
   try {
-    finished = only_one ? world().step() : world().advance_frame(hurry, deadline);
+    finished = only_one ? world().step() : world().advance_frame(interrupted, deadline);
   } catch (const Error& e) {  // the world has returned to the end of the last frame
     running_ = false;
     report(e);

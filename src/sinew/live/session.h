@@ -36,10 +36,10 @@ class Session {
   double time_scale() const { return time_scale_; }
 
   // Takes steps to the end of the current frame, at least one; none after `deadline`, and none
-  // after `hurry` is set. Returns true if the frame is finished, that of a compared body as well.
-  // If a body diverges, it returns to the end of the last frame and is paused; the status gives the
-  // reason.
-  bool advance(Clock::time_point deadline, const std::atomic<bool>* hurry = nullptr);
+  // after `interrupted` is set. Returns true if the frame is finished, that of a compared body as
+  // well. If a body diverges, it returns to the end of the last frame and is paused; the status
+  // gives the reason.
+  bool advance(Clock::time_point deadline, const std::atomic<bool>* interrupted = nullptr);
   void take_step();
 
   // Measures energies too, which costs about as much as a step in double precision.
@@ -60,25 +60,25 @@ class Session {
     std::int64_t steps = 0, newton = 0, products = 0;
   };
 
-  void act(const Play& c);
-  void act(const Advance& c);
-  void act(const Reset& c);
-  void act(const Load& c);
-  void act(const Open& c) { act(Load{c.scene()}); }
-  void act(const SetMaterial& c);
-  void act(const SetStepping& c);
-  void act(const SetGravity& c);
-  void act(const SetTimeScale& c);
-  void act(const SetQuantity& c);
-  void act(const Grab& c);
-  void act(const Drag& c);
-  void act(const Release& c);
-  void act(const MoveBall& c);
-  void act(const RemoveBall& c);
-  void act(const SetCut& c);
-  void act(const SetSprings& c);
-  void act(const SetCompare& c);
-  void act(const SaveState& c);
+  void execute(const Play& c);
+  void execute(const Advance& c);
+  void execute(const Reset& c);
+  void execute(const Load& c);
+  void execute(const Open& c) { execute(Load{c.scene()}); }
+  void execute(const SetMaterial& c);
+  void execute(const SetStepping& c);
+  void execute(const SetGravity& c);
+  void execute(const SetTimeScale& c);
+  void execute(const SetQuantity& c);
+  void execute(const Grab& c);
+  void execute(const Drag& c);
+  void execute(const Release& c);
+  void execute(const MoveBall& c);
+  void execute(const RemoveBall& c);
+  void execute(const SetCut& c);
+  void execute(const SetSprings& c);
+  void execute(const SetCompare& c);
+  void execute(const SaveState& c);
 
   // `leader`: the session that this one is compared with; it takes the leader's stepper.
   Session(const Scene& scene, const Session* leader);
@@ -92,8 +92,8 @@ class Session {
   void remember_parameters();
   void show(const Cut& cut, bool springs);
   void let_go();
-  void tell_other(const Command& command);
-  bool catch_up(Clock::time_point deadline, const std::atomic<bool>* hurry);
+  void forward_to_compared(const Command& command);
+  bool catch_up(Clock::time_point deadline, const std::atomic<bool>* interrupted);
   void note_pair();
   void keep_pace();
   // The sum of all terms at the state [N] (nodes).
@@ -101,7 +101,7 @@ class Session {
     return world().stepping().forces().evaluate(world().controls(), state()).force;
   }
   double size() const { return static_cast<double>(topology_->diagonal); }
-  bool steps(Clock::time_point deadline, const std::atomic<bool>* hurry, bool only_one);
+  bool steps(Clock::time_point deadline, const std::atomic<bool>* interrupted, bool only_one);
   double capacity() const;
   std::string limiting() const;
 
@@ -124,9 +124,9 @@ class Session {
 
   // The body that this one is compared with: a session of the same scene with another law.
   std::unique_ptr<Session> other_;
-  std::string compare_;  // that law's name
-  bool ahead_ = false;   // this body's frame is finished, the other's is not
-  struct Pair {          // positions of both at the same time [m] (nodes)
+  std::string compare_;          // that law's name
+  bool frame_finished_ = false;  // this body's frame is finished, the other's is not
+  struct Pair {                  // positions of both at the same time [m] (nodes)
     std::vector<Vec3> mine, others;
   };
   Pair pair_;

@@ -29,7 +29,7 @@ void hash_path(Hash& h, const Path& path) {
 }  // namespace
 
 bool Model::bounces() const {
-  return (touch && touch->restitution > 0.0) ||
+  return (body_contact && body_contact->restitution > 0.0) ||
          std::any_of(obstacles.begin(), obstacles.end(),
                      [](const Obstacle& o) { return o.hard() && o.restitution > 0.0; });
 }
@@ -68,12 +68,12 @@ std::uint64_t Model::hash() const {
   h.value(limit_sweeps);
   h.value(limit_tolerance);
   hash_vec(h, start_gravity);
-  h.value(touch.has_value());
-  if (touch) {
-    h.value(touch->bodies);
-    h.value(touch->self);
-    h.value(touch->friction);
-    h.value(touch->restitution);
+  h.value(body_contact.has_value());
+  if (body_contact) {
+    h.value(body_contact->bodies);
+    h.value(body_contact->self);
+    h.value(body_contact->friction);
+    h.value(body_contact->restitution);
   }
   for (const Body& b : bodies) {
     h.text(b.name);

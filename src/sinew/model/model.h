@@ -9,10 +9,10 @@
 #include <vector>
 
 #include "sinew/base/vec.h"
+#include "sinew/model/contact_surface.h"
 #include "sinew/model/material.h"
 #include "sinew/model/obstacle.h"
 #include "sinew/model/path.h"
-#include "sinew/model/touch_surface.h"
 
 namespace sinew {
 
@@ -51,7 +51,7 @@ struct Load {
 };
 
 // Contact of bodies with each other and with themselves (contact/). docs/methods/contact.md.
-struct Touch {
+struct BodyContact {
   bool bodies = true;        // bodies against bodies
   bool self = false;         // every body against itself
   double friction = 0.5;     // [-] Coulomb's mu >= 0
@@ -155,7 +155,7 @@ struct Model {
   double limit_tolerance = 1e-3;  // tolerance of a violation, as a share of l0
 
   Vec3 start_gravity = Vec3(0.0, -9.81, 0.0);  // [m/s2], initial value of Controls
-  std::optional<Touch> touch;
+  std::optional<BodyContact> body_contact;
   std::vector<Body> bodies;
   std::vector<Pin> pins;
   std::vector<Load> loads;
@@ -166,7 +166,7 @@ struct Model {
                                       // (nodes of bodies), 0 inside: what soft obstacles and
                                       // tools press
   Skin skin;                          // empty where there are no hard obstacles
-  TouchSurface surface;               // what may touch; empty where nothing does
+  ContactSurface surface;  // of bodies and rigid meshes; empty without contact between them
 
   Index node_count() const { return static_cast<Index>(rest_position.size()); }
   Index tet_count() const { return static_cast<Index>(tets.size()); }

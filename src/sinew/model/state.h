@@ -19,17 +19,17 @@ struct EnergyAccount {
 };
 
 // The force of a contact (contact/contact.h describes weights and nodes).
-struct ContactPush {
+struct ContactForce {
   ContactId id;
   std::array<Index, 4> node = {-1, -1, -1, -1};  // the first count() are used
   std::array<double, 4> weight = {};             // of the nodes [-]
-  Vec3 push = Vec3::Zero();  // [N]: at the end of an implicit step, mean over a Verlet step
+  Vec3 force = Vec3::Zero();  // [N]: at the end of an implicit step, mean over a Verlet step
 
   std::size_t count() const {  // nodes used
     return static_cast<std::size_t>(std::find(node.begin(), node.end(), -1) - node.begin());
   }
 };
-static_assert(sizeof(ContactPush) == sizeof(ContactId) + 4 * sizeof(Index) + 7 * sizeof(double) &&
+static_assert(sizeof(ContactForce) == sizeof(ContactId) + 4 * sizeof(Index) + 7 * sizeof(double) &&
                   sizeof(ContactId) == 4 * sizeof(Index),
               "no gaps: checkpoints hold its bytes");
 
@@ -39,7 +39,7 @@ static_assert(sizeof(ContactPush) == sizeof(ContactId) + 4 * sizeof(Index) + 7 *
 struct Reactions {
   std::vector<double> tension;   // of each limited spring [N] (as Model::limited), < 0: compression
   std::vector<double> pressure;  // of each limited cell [Pa] (cells), > 0: inwards
-  std::vector<ContactPush> contacts;  // those with a force, by id
+  std::vector<ContactForce> contacts;  // those with a force, by id
 };
 
 struct State {

@@ -31,15 +31,15 @@ State transfer_state(const TopologyChange& change, const Model& before, const Mo
     out.position[n] = state.position[i];
     out.half_velocity[n] = state.half_velocity[i];
   }
-  for (ContactPush push : state.reactions.contacts) {
-    if (push.id.kind != ContactKind::node_shape) continue;
-    const Index node = change.node[uz(push.id.feature)];
+  for (ContactForce force : state.reactions.contacts) {
+    if (force.id.kind != ContactKind::node_shape) continue;
+    const Index node = change.node[uz(force.id.feature)];
     if (node < 0) continue;
-    push.id.feature = push.node[0] = node;
-    out.reactions.contacts.push_back(push);
+    force.id.feature = force.node[0] = node;
+    out.reactions.contacts.push_back(force);
   }
   std::sort(out.reactions.contacts.begin(), out.reactions.contacts.end(),
-            [](const ContactPush& a, const ContactPush& b) { return a.id < b.id; });
+            [](const ContactForce& a, const ContactForce& b) { return a.id < b.id; });
   return out;
 }
 

@@ -8,11 +8,11 @@
 
 namespace sinew {
 
-// The force that holds a node: share * push [N].
+// The force that holds a node: share * force [N].
 struct NodeHold {
   Index node = 0;
-  double share = 0.0;        // [-] in [0, 1]
-  Vec3 push = Vec3::Zero();  // of all contacts of the step before on the node [N]
+  double share = 0.0;         // [-] in [0, 1]
+  Vec3 force = Vec3::Zero();  // of all contacts of the step before on the node [N]
 };
 
 // The contact forces that held resting nodes in the step before. The force on a node counts up to

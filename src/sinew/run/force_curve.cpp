@@ -41,7 +41,7 @@ std::string force_curve(const std::string& probes_csv, const std::string& obstac
     series.y.push_back(std::strtod(cells[force].c_str(), nullptr));
   }
   report::Plot plot;
-  plot.title = "Force on " + obstacle + " against its way";
+  plot.title = "Force on " + obstacle + " against its travel";
   plot.x.label = "travel [mm]";
   plot.y.label = "force [N]";
   plot.series = {series};

@@ -9,15 +9,15 @@
 #include <set>
 
 #include "sinew/contact/colliders.h"
+#include "sinew/contact/contact_surface.h"
 #include "sinew/contact/overlaps.h"
-#include "sinew/contact/touch_surface.h"
 #include "sinew/forces/assemble.h"
-#include "sinew/forces/laws.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/identify/calibrate.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/surface.h"
+#include "sinew/model/mean_edge.h"
 #include "sinew/model/state.h"
 #include "sinew/scene/connect.h"
 #include "sinew/scene/place.h"
@@ -153,7 +153,7 @@ double default_obstacle_stiffness(const std::vector<PlacedBody>& bodies, double 
     length = std::min(length, (placed.high - placed.low).minCoeff());
     double volume = 0.0;
     for (const Tet& t : placed.mesh.tets) volume += signed_volume(placed.mesh.nodes, t);
-    const double edge = regular_edge(volume / placed.mesh.tet_count());
+    const double edge = regular_tet_edge(volume / placed.mesh.tet_count());
     const auto consider = [&](const Material& m) {
       // A uniform spring k is about what Lloyd's law gives an edge of five tets for E = 2 k / l.
       const double young = m.law == Law::uniform ? 2.0 * m.spring_stiffness / edge : m.young;
@@ -331,12 +331,12 @@ Model build_model(const Scene& scene, BuildReport* report) {
   model.limit_sweeps = scene.limit_sweeps;
   model.limit_tolerance = scene.limit_tolerance;
   if (const auto& c = scene.contact)
-    model.touch = Touch{c->bodies, c->self, c->friction, c->restitution};
-  build_touch_surface(model);
+    model.body_contact = BodyContact{c->bodies, c->self, c->friction, c->restitution};
+  build_contact_surface(model);
   Parts(scene, bodies, model).add();
-  build_touch_surface(model);
+  build_contact_surface(model);
   finish(model);
-  if (report != nullptr && model.touch && model.touch->bodies)
+  if (report != nullptr && model.body_contact && model.body_contact->bodies)
     report->warnings = overlap_warnings(model);
   return model;
 }

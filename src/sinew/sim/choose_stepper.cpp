@@ -29,17 +29,17 @@ constexpr double steps_of_implicit = 25.0;
 constexpr double most_load = 0.6;
 
 // The feature of the model that only Verlet's step supports; null if there is none.
-const char* only_verlet_knows(const Model& model) {
+const char* only_verlet_supports(const Model& model) {
   return model.bounces() ? "restitution" : nullptr;
 }
 
-// Puts tangled bodies at the rest shape to which inversion recovery leads them: the trial measures
+// Puts tangled bodies at the rest shape at which inversion recovery ends: the trial measures
 // the steps that follow.
 void recover(const Model& model, State& state) {
   put_at_rest_shape(model, find_tangled(model, find_low_tets(model, state.position)), state);
 }
 
-struct Trial {
+struct TrialCost {
   double newton = 0.0;    // Newton steps a frame
   double products = 0.0;  // Hessian products a frame
   double work = 0.0;      // of a frame, in Verlet steps in double precision
@@ -73,8 +73,8 @@ class Policy {
   }
 
   // Nothing if a step finds no equilibrium.
-  std::optional<Trial> try_steps(const StepperChoice& choice) const {
-    Trial trial;
+  std::optional<TrialCost> try_steps(const StepperChoice& choice) const {
+    TrialCost trial;
     State state = start_;
     StepMemory memory = choice.memory;
     recover(model_, state);
@@ -109,8 +109,8 @@ class Policy {
       choice.reason = std::move(reason);
       return choice;
     };
-    if (const char* known = only_verlet_knows(model_)) {
-      return because(std::move(verlet), fmt::format("implicit steps do not know {}", known));
+    if (const char* feature = only_verlet_supports(model_)) {
+      return because(std::move(verlet), fmt::format("implicit steps ignore {}", feature));
     }
     if (!std::isfinite(stable)) return because(std::move(verlet), "nothing can move");
     StepperChoice implicit = ready(StepperKind::implicit, {}, method);

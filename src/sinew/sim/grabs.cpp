@@ -119,7 +119,7 @@ Vec3 World::target(GrabHandle handle) const {
   return controls_->grabs[index_of(handle)].target;
 }
 
-Vec3 World::held_at(GrabHandle handle) const {
+Vec3 World::unloaded_target(GrabHandle handle) const {
   const std::size_t g = index_of(handle);
   const Grab& grab = controls_->grabs[g];
   Vec3 at = Vec3::Zero();
@@ -128,8 +128,8 @@ Vec3 World::held_at(GrabHandle handle) const {
   return at;
 }
 
-Vec3 World::pull(GrabHandle handle) const {
-  return grab_pull(*model_, controls_->grabs[index_of(handle)], run_.state.position);
+Vec3 World::force(GrabHandle handle) const {
+  return grab_force(*model_, controls_->grabs[index_of(handle)], run_.state.position);
 }
 
 std::vector<GrabHandle> World::grabs() const {

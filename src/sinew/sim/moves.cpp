@@ -93,7 +93,7 @@ ToolHandle World::add_tool(const Vec3& center, double radius, double stiffness) 
   return {serial_, tools_.back().id};
 }
 
-void World::lead(ToolHandle handle, const Vec3& center, double seconds) {
+void World::move(ToolHandle handle, const Vec3& center, double seconds) {
   const Busy busy(*this);
   Tool& tool = controls_->tools[index_of(handle)];
   const double now = run_.state.time;

@@ -7,7 +7,7 @@
 
 namespace sinew {
 
-double touching_distance(const Model& model) {
+double contact_distance(const Model& model) {
   double longest = 0.0;
   for (const double l : model.skin.longest_edge) longest = std::max(longest, l);
   return 1e-3 * longest;
@@ -24,7 +24,7 @@ void read_hard(const Model& model, const Controls& controls, const State& state,
   std::vector<Contact> contacts;
   if (finder != nullptr)
     finder->find(controls, state.position, state.position, state.time, state.time,
-                 touching_distance(model), contacts);
+                 contact_distance(model), contacts);
   for (const Contact& c : contacts) {
     const Index obstacle = c.id.obstacle();
     if (obstacle < 0) continue;

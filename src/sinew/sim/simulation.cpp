@@ -326,7 +326,7 @@ Point Simulation::target(GrabHandle handle) const {
   return sim::point(world().target(handle));
 }
 Point Simulation::force(GrabHandle handle) const {
-  return sim::point(world().pull(handle));
+  return sim::point(world().force(handle));
 }
 void Simulation::release(GrabHandle handle) {
   any_world().release(handle);

@@ -93,7 +93,7 @@ State transfer_state(const Model& before, const State& old, const Model& after,
   return s;
 }
 
-void calm_softened_bodies(const Model& before, const Model& after, State& state) {
+void damp_softened_bodies(const Model& before, const Model& after, State& state) {
   for (std::size_t b = 0; b < after.bodies.size(); ++b) {
     const Body& body = after.bodies[b];
     const double ratio = mean_modulus(after, body) / mean_modulus(before, before.bodies[b]);

@@ -9,8 +9,8 @@
 namespace sinew {
 
 // The state as it goes on with `after`, whose bodies, pins and attachments have the same nodes.
-// Obstacles may have come or gone; the one named `replaced` starts anew. Contacts start cold.
-// `controls`: of `after`.
+// Obstacles may have come or gone; the one named `replaced` is initialised again. Contacts start
+// without a warm start. `controls`: of `after`.
 State transfer_state(const Model& before, const State& old, const Model& after,
                      const Controls& controls, const std::string& replaced);
 
@@ -19,7 +19,7 @@ State transfer_state(const Model& before, const State& old, const Model& after,
 // its vibration is then the same: a deformed body made a million times stiffer vibrates at a
 // thousand times the speed, and would be torn apart at that speed when it is soft again. The models
 // have the same nodes.
-void calm_softened_bodies(const Model& before, const Model& after, State& state);
+void damp_softened_bodies(const Model& before, const Model& after, State& state);
 
 // Null if there is no obstacle of that name.
 const Obstacle* obstacle_named(const Model& model, const std::string& name);

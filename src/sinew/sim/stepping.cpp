@@ -135,7 +135,7 @@ bool Stepping::too_long(const RunState& run, double stable, double slack) const 
   return run.step > stable && !options_.allow_unstable;
 }
 
-// Adapts the length of the steps to the stable step if it was estimated anew.
+// Adapts the length of the steps to the stable step if it was estimated again.
 void Stepping::watch(const Controls& controls, RunState& run) {
   const auto stable = stepper_->watch(run.step, controls, run.state, run.memory);
   if (!stable) return;
@@ -167,7 +167,7 @@ bool Stepping::one_step(const Controls& controls, RunState& run, const std::atom
   ++run.work.steps;
   run.work.seconds += seconds_since(start);
   if (report.stopped) {
-    run.steps_left = 0;  // the rest of the frame is planned anew when the run continues
+    run.steps_left = 0;  // the rest of the frame is planned again when the run continues
     return false;
   }
   --run.steps_left;
@@ -238,8 +238,8 @@ void Stepping::require_stable(const Controls& controls, RunState& run, double h)
   throw Error(
       ErrorKind::unstable,
       fmt::format("the step {:.4g} s is above the largest stable one, {:.4g} s", h, longest),
-      "take a smaller step, or advance(), which takes stable ones; or a softer material, a coarser "
-      "mesh or stepper = \"implicit\"");
+      "use a smaller step, or advance(), which chooses a stable one; or a softer material, a "
+      "coarser mesh or stepper = \"implicit\"");
 }
 
 double Stepping::prepare(const Controls& controls, RunState& run) {

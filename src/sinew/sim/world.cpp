@@ -69,7 +69,7 @@ World::Built World::build(Source source) {
   return b;
 }
 
-void World::take(Built built) {
+void World::replace_by(Built built) {
   const StepperKind before = run_.stepper;
   for (Mover& m : built.obstacles)
     if (m.id == 0) m.id = next_id_++;
@@ -85,12 +85,12 @@ void World::take(Built built) {
   run_ = std::move(built.run);
   warnings_ = warnings_of(source_.scene, report_);
   hold_grabs();
-  remember();
+  note_model();
   note_stepper(before);
 }
 
 // Takes the bodies and the surface from the model, and keeps the run.
-void World::remember() {
+void World::note_model() {
   bodies_.clear();
   for (const Body& b : model_->bodies) {
     BodyInfo info{
@@ -114,7 +114,7 @@ void World::start(Source source) {
   }
   b.stepping = std::make_unique<Stepping>(options_of(b.source.scene), *b.model, *b.controls, b.run);
   for (const Obstacle& o : b.model->obstacles) b.obstacles.push_back({0, o.name, false, {}});
-  take(std::move(b));
+  replace_by(std::move(b));
   for (const ScenePin& p : source_.scene.pins) pins_.push_back({next_id_++, p.name, false, {}});
   for (const SceneBody& body : source_.scene.bodies) {
     parts_.push_back({body.name, ""});
@@ -135,7 +135,7 @@ void World::reset() {
     tools_.clear();
     grabs_.clear();
     for (Mover& m : pins_) m = {m.id, m.name, false, {}};
-    take(std::move(b));
+    replace_by(std::move(b));
     look_for_inverted_tets();
   });
 }
@@ -181,7 +181,7 @@ void World::rebuild(Source source, const std::string& replaced, Steps steps) {
 
   b.run.state = transfer_state(*model_, run_.state, *b.model, *b.controls, replaced);
   b.run.step = run_.step;
-  calm_softened_bodies(*model_, *b.model, b.run.state);
+  damp_softened_bodies(*model_, *b.model, b.run.state);
   SteppingOptions options = options_of(b.source.scene);
   if (steps == Steps::kept) {
     options.stepper = run_.stepper;
@@ -192,7 +192,7 @@ void World::rebuild(Source source, const std::string& replaced, Steps steps) {
   b.stepping->resume_at(b.run);
   b.controls->tools = controls_->tools;
   b.controls->grabs = controls_->grabs;
-  take(std::move(b));
+  replace_by(std::move(b));
 }
 
 // ---- changes of the scene ----
@@ -273,8 +273,8 @@ void World::forget_steps() {
 
 // ---- new steps for the same model ----
 
-// `state` goes on here. Grabs take no part in the choice of the steps.
-void World::rechoose(const State& state) {
+// Continues from `state`. Grabs take no part in the choice of the steps.
+void World::choose_stepper_at(const State& state) {
   RunState run;
   run.state = state;
   run.state.reactions = {};
@@ -295,10 +295,10 @@ void World::rechoose(const State& state) {
 
 void World::choose_steps() {
   const Busy busy(*this);
-  arena_.run([&] { rechoose(run_.state); });
+  arena_.run([&] { choose_stepper_at(run_.state); });
 }
 
-void World::go_on_from(const World& other) {
+void World::continue_from(const World& other) {
   const Busy busy(*this);
   obstacles_ = other.obstacles_;
   pins_ = other.pins_;
@@ -307,7 +307,7 @@ void World::go_on_from(const World& other) {
   next_id_ = std::max(next_id_, other.next_id_);
   controls_ = other.controls_;
   grabs_ = other.grabs_;
-  arena_.run([&] { rechoose(other.run_.state); });
+  arena_.run([&] { choose_stepper_at(other.run_.state); });
 }
 
 }  // namespace sinew::sim

@@ -91,19 +91,19 @@ class World {
   std::size_t index_of(ToolHandle handle) const;
   std::size_t index_of(GrabHandle handle) const;
   std::size_t index_of(MaterialHandle handle) const;
-  // The handle here of the object that `handle` names in the world that this one went on from.
+  // The handle here of the object that `handle` names in the world that this one continues from.
   template <typename Kind>
   Handle<Kind> counterpart(Handle<Kind> handle) const {
     return {serial_, handle.id_};
   }
 
-  // ---- changes that build the model anew (world.cpp) ----
+  // ---- changes that rebuild the model (world.cpp) ----
   ObstacleHandle add(const ObstacleDescription& description);
   void change(ObstacleHandle handle, const ObstacleDescription& description);
   void remove(ObstacleHandle handle);
   void change(MaterialHandle handle, const MaterialDescription& description);
   // Other values of the same bodies, pins and obstacles, as overrides like those of --set. Steps
-  // are chosen anew and counters start again.
+  // are chosen again and counters start again.
   void change(const std::vector<std::string>& overrides);
   // Removes the keys of the steps from the scene.
   void forget_steps();
@@ -111,11 +111,11 @@ class World {
   // moved objects follow the scene's paths again.
   void reset();
 
-  // Chooses the steps anew without another model and continues; counters start again.
+  // Chooses the steps again without another model and continues; counters start again.
   void choose_steps();
   // Continues from the state of another world of the same nodes and parts, with its grabs and
   // tools. For a new world; if this throws, the world must not be used.
-  void go_on_from(const World& other);
+  void continue_from(const World& other);
 
   // ---- motion (moves.cpp) ----
   void set_gravity(const Vec3& gravity);
@@ -126,7 +126,7 @@ class World {
   // A tool comes and goes without another model, and stays when the model changes.
   ToolHandle add_tool(const Vec3& center, double radius, double stiffness);
   // To `center` [m] over the next `seconds` > 0.
-  void lead(ToolHandle handle, const Vec3& center, double seconds);
+  void move(ToolHandle handle, const Vec3& center, double seconds);
   // Another radius [m] and stiffness [N/m3], at once.
   void reshape(ToolHandle handle, double radius, double stiffness);
   void remove(ToolHandle handle);
@@ -139,8 +139,8 @@ class World {
   void release(GrabHandle handle);
   std::vector<GrabHandle> grabs() const;
   Vec3 target(GrabHandle handle) const;
-  Vec3 held_at(GrabHandle handle) const;  // the target at which it would not pull [m]
-  Vec3 pull(GrabHandle handle) const;     // on the tissue [N]
+  Vec3 unloaded_target(GrabHandle handle) const;  // the target at which it exerts no force [m]
+  Vec3 force(GrabHandle handle) const;            // on the tissue [N]
 
   // ---- states (saved_state.cpp) ----
   std::string save() const;
@@ -171,7 +171,7 @@ class World {
   Wrench pin_wrench(std::size_t pin, const Vec3& about);
   void contacts(std::size_t obstacle, std::vector<ContactPoint>& out);
   double depth(std::size_t obstacle);
-  // Null if nothing but soft obstacles can touch.
+  // Null if there are no contacts but those of soft obstacles.
   ContactFinder* finder();
 
  private:
@@ -224,12 +224,12 @@ class World {
 
   SteppingOptions options_of(const Scene& scene) const;
   static Built build(Source source);
-  void take(Built built);
+  void replace_by(Built built);
   void start(Source source);
   void rebuild(Source source, const std::string& replaced, Steps steps);
-  void rechoose(const State& state);
+  void choose_stepper_at(const State& state);
   Source changed(DocValue document, GivenMeshes given) const;
-  void remember();
+  void note_model();
   // Runs `steps`, and restores the run if they diverge.
   template <typename F>
   void guarded(const F& steps);

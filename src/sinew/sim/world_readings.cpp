@@ -15,9 +15,9 @@ namespace {
 struct Sum {
   Vec3 about, force = Vec3::Zero(), torque = Vec3::Zero();
 
-  void add(const Vec3& place, const Vec3& push) {
-    force += push;
-    torque += (place - about).cross(push);
+  void add(const Vec3& place, const Vec3& f) {
+    force += f;
+    torque += (place - about).cross(f);
   }
   Wrench wrench() const { return {point(force), point(torque)}; }
 };
@@ -38,8 +38,8 @@ const std::vector<Vec3>& World::forces() {
     forces_ = evaluator_->evaluate(*controls_, run_.state).force;
   });
   const Reactions& r = run_.state.reactions;
-  for (const ContactPush& p : r.contacts)
-    for (std::size_t a = 0; a < p.count(); ++a) forces_[uz(p.node[a])] += p.weight[a] * p.push;
+  for (const ContactForce& p : r.contacts)
+    for (std::size_t a = 0; a < p.count(); ++a) forces_[uz(p.node[a])] += p.weight[a] * p.force;
   forces_of_ = changes_;
   return forces_;
 }
@@ -49,14 +49,14 @@ Wrench World::wrench(std::size_t obstacle, const Vec3& about) {
   Sum sum{about};
   if (!o.hard()) {
     for_each_pressed(*model_, soft_sphere(*model_, *controls_, obstacle, run_.state.time),
-                     run_.state.position, [&](std::size_t n, const Vec3&, const Vec3& push) {
-                       sum.add(run_.state.position[n], -push);
+                     run_.state.position, [&](std::size_t n, const Vec3&, const Vec3& force) {
+                       sum.add(run_.state.position[n], -force);
                      });
     return sum.wrench();
   }
-  for (const ContactPush& p : run_.state.reactions.contacts)
+  for (const ContactForce& p : run_.state.reactions.contacts)
     if (p.id.obstacle() == static_cast<Index>(obstacle))
-      sum.add(place_of(p, run_.state.position), -p.push);
+      sum.add(place_of(p, run_.state.position), -p.force);
   return sum.wrench();
 }
 
@@ -84,7 +84,7 @@ void World::find_contacts_now() {
   arena_.run([&] {
     const State& s = run_.state;
     if (ContactFinder* f = finder())
-      f->find(*controls_, s.position, s.position, s.time, s.time, touching_distance(*model_),
+      f->find(*controls_, s.position, s.position, s.time, s.time, contact_distance(*model_),
               contacts_);
   });
   contacts_of_ = changes_;

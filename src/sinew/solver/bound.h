@@ -10,7 +10,7 @@
 namespace sinew {
 
 // The relative tolerance of the normal forces that bound friction.
-inline constexpr double grip_tolerance = 2e-3;
+inline constexpr double friction_tolerance = 2e-3;
 
 // A quantity q with the constraint low <= q <= high, a stiffness k > 0 and the multiplier p of the
 // pass before:
@@ -19,17 +19,17 @@ inline constexpr double grip_tolerance = 2e-3;
 //   W(q) = (s^2 - p^2) / (2 k)                                   dW/dq = s
 //
 // If s(q) = p, the constraint holds exactly, for any k: s > 0 only at q = high, s < 0 only at low.
-inline double bound_pull(double q, double low, double high, double k, double p) {
+inline double bound_force(double q, double low, double high, double k, double p) {
   const double t = q + p / k;
   return k * (t - std::clamp(t, low, high));
 }
 inline double bound_energy(double q, double low, double high, double k, double p) {
-  const double s = bound_pull(q, low, high, k, p);
+  const double s = bound_force(q, low, high, k, p);
   return 0.5 * (s * s - p * p) / k;
 }
 // d2W/dq2.
 inline double bound_stiffness(double q, double low, double high, double k, double p) {
-  return bound_pull(q, low, high, k, p) != 0.0 ? k : 0.0;
+  return bound_force(q, low, high, k, p) != 0.0 ? k : 0.0;
 }
 
 // Coulomb friction for a slip u along the plane: at most r = mu times the normal force, with a
@@ -40,7 +40,7 @@ inline double bound_stiffness(double q, double low, double high, double k, doubl
 //
 // If s(u) = p, the node sticks (u = 0, |s| <= r) or slides (s = r u / |u|); there is no creep at
 // low speed.
-inline Vec3 friction_pull(const Vec3& u, double r, double k, const Vec3& p) {
+inline Vec3 friction_force(const Vec3& u, double r, double k, const Vec3& p) {
   const Vec3 t = p + k * u;
   const double size = t.norm();
   return size <= r ? t : Vec3((r / size) * t);

@@ -149,17 +149,17 @@ void Constraints::start(const Controls& controls, const State& state, const std:
   }
 }
 
-double Constraints::spring_pull(std::size_t k, double length) const {
+double Constraints::spring_tension(std::size_t k, double length) const {
   const Interval range = spring_interval(model_, uz(model_.limited[k]));
-  return bound_pull(length, range.low, range.high, hardness_ * spring_stiffness_[k],
-                    now_.tension[k]);
+  return bound_force(length, range.low, range.high, hardness_ * spring_stiffness_[k],
+                     now_.tension[k]);
 }
 
-double Constraints::cell_pull(std::size_t c, double volume) const {
+double Constraints::cell_pressure(std::size_t c, double volume) const {
   if (cell_stiffness_[c] == 0.0) return 0.0;
   const Interval range = cell_interval(model_, c);
-  return bound_pull(volume, range.low, range.high, hardness_ * cell_stiffness_[c],
-                    now_.pressure[c]);
+  return bound_force(volume, range.low, range.high, hardness_ * cell_stiffness_[c],
+                     now_.pressure[c]);
 }
 
 double Constraints::value(const std::vector<Vec3>& x, std::span<const double> tet_volume) const {
@@ -189,9 +189,9 @@ void Constraints::spread(const std::vector<Vec3>& x, const Spring& spring, const
     const Vec3 x_ij = x[uz(b)] - x[uz(a)];
     const double length = x_ij.norm();
     if (length == 0.0) return;
-    const Vec3 pull = (spring(k, length) / length) * x_ij;
-    force[uz(a)] += pull;
-    force[uz(b)] -= pull;
+    const Vec3 tension = (spring(k, length) / length) * x_ij;
+    force[uz(a)] += tension;
+    force[uz(b)] -= tension;
   });
   if (cell_stiffness_.empty()) return;
   std::vector<double> pressure(cell_stiffness_.size());
@@ -206,8 +206,8 @@ void Constraints::add_forces(const std::vector<Vec3>& x, const TetVolumes& tets,
                              std::vector<Vec3>& force) const {
   contacts_.add_forces(x, force);
   spread(
-      x, [&](std::size_t k, double length) { return spring_pull(k, length); },
-      [&](std::size_t c) { return cell_pull(c, sum_of_cell(model_, c, tets.volume)); }, tets,
+      x, [&](std::size_t k, double length) { return spring_tension(k, length); },
+      [&](std::size_t c) { return cell_pressure(c, sum_of_cell(model_, c, tets.volume)); }, tets,
       force);
 }
 
@@ -226,15 +226,16 @@ void Constraints::linearise(const std::vector<Vec3>& x, const TetVolumes& tets) 
     const auto s = uz(model_.limited[uz(i)]);
     const Vec3 x_ij = x[uz(model_.springs[s][1])] - x[uz(model_.springs[s][0])];
     const double length = x_ij.norm();
-    const double pull = length > 0.0 ? spring_pull(uz(i), length) : 0.0;
-    if (pull == 0.0) return;
-    spring_tangent_[uz(i)] = {x_ij / length, hardness_ * spring_stiffness_[uz(i)], pull / length};
+    const double tension = length > 0.0 ? spring_tension(uz(i), length) : 0.0;
+    if (tension == 0.0) return;
+    spring_tangent_[uz(i)] = {x_ij / length, hardness_ * spring_stiffness_[uz(i)],
+                              tension / length};
   });
   if (cell_stiffness_.empty()) return;
   cell_tangent_.assign(cell_stiffness_.size(), 0.0);
   std::vector<double> pressure(cell_stiffness_.size());
   parallel_for(model_.cell_count(), [&](Index c) {
-    pressure[uz(c)] = cell_pull(uz(c), sum_of_cell(model_, uz(c), tets.volume));
+    pressure[uz(c)] = cell_pressure(uz(c), sum_of_cell(model_, uz(c), tets.volume));
     if (pressure[uz(c)] != 0.0) cell_tangent_[uz(c)] = hardness_ * cell_stiffness_[uz(c)];
   });
   press_cells(model_, pressure, tet_pressure_);
@@ -273,22 +274,23 @@ ConstraintError Constraints::update(const Controls& controls, const std::vector<
   const double springs = parallel_max(next.tension.size(), [&](std::size_t i) {
     const auto s = uz(model_.limited[i]);
     const double length = (x[uz(model_.springs[s][1])] - x[uz(model_.springs[s][0])]).norm();
-    next.tension[i] = spring_pull(i, length);
+    next.tension[i] = spring_tension(i, length);
     const double k = hardness_ * spring_stiffness_[i];
     return std::abs(next.tension[i] - now_.tension[i]) /
            (k * model_.limit_tolerance * model_.rest_length[s]);
   });
   const double cells = parallel_max(next.pressure.size(), [&](std::size_t i) {
     if (cell_stiffness_[i] == 0.0) return 0.0;
-    next.pressure[i] = cell_pull(i, sum_of_cell(model_, i, tet_volume));
+    next.pressure[i] = cell_pressure(i, sum_of_cell(model_, i, tet_volume));
     const double k = hardness_ * cell_stiffness_[i];
     const double tolerance = std::min(cell_tolerance, 0.1 * model_.volume_limit[i]);
     return std::abs(next.pressure[i] - now_.pressure[i]) / (k * tolerance * model_.cell_volume[i]);
   });
   now_ = std::move(next);
-  const ContactConstraints::Change touching = contacts_.update(controls, x);
-  now_.contacts = contacts_.pushes();
-  return {std::max({springs, cells, touching.distance}), touching.grip, touching.anew};
+  const ContactConstraints::Change contacts = contacts_.update(controls, x);
+  now_.contacts = contacts_.contact_forces();
+  return {std::max({springs, cells, contacts.distance}), contacts.friction,
+          contacts.changed_contacts};
 }
 
 void Constraints::store(State& state) const {
@@ -301,11 +303,11 @@ Index Constraints::contacts() const {
   return static_cast<Index>(now_.contacts.size());
 }
 
-bool act(const Reactions& reactions) {
-  const auto pulls = [](double s) { return s != 0.0; };
+bool any_active(const Reactions& reactions) {
+  const auto active = [](double s) { return s != 0.0; };
   return !reactions.contacts.empty() ||
-         std::any_of(reactions.tension.begin(), reactions.tension.end(), pulls) ||
-         std::any_of(reactions.pressure.begin(), reactions.pressure.end(), pulls);
+         std::any_of(reactions.tension.begin(), reactions.tension.end(), active) ||
+         std::any_of(reactions.pressure.begin(), reactions.pressure.end(), active);
 }
 
 }  // namespace sinew

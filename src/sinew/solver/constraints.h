@@ -15,8 +15,8 @@ namespace sinew {
 // The errors of constraints and friction, as multiples of their tolerances: at most 1 if they hold.
 struct ConstraintError {
   double distance = 0.0;  // largest change of a force over k: a distance past the bound
-  double grip = 0.0;      // change of the normal forces that bound friction, relative to their sum
-  double anew = 0.0;      // the error due to contacts that were found again
+  double friction = 0.0;  // change of the normal forces that bound friction, relative to their sum
+  double changed_contacts = 0.0;  // the error due to contacts that were found again
 };
 
 // Constraints on
@@ -61,7 +61,7 @@ class Constraints {
                            std::vector<Vec3>& out) const;
 
   // The results of linearise(): for every limited spring k n n^T + a (1 - n n^T) between its ends;
-  // for every cell k dV dV^T. Contacts: touching().tangents().
+  // for every cell k dV dV^T. Contacts: contact_constraints().tangents().
   struct SpringTangent {
     Vec3 direction = Vec3::Zero();  // n
     double along = 0.0;             // k [N/m]
@@ -75,7 +75,7 @@ class Constraints {
 
   // --- the multipliers ---
 
-  // Takes the pushes at x as the new multipliers; returns how far the old ones were off.
+  // Takes the forces at x as the new multipliers; returns the error of the old ones.
   ConstraintError update(const Controls& controls, const std::vector<Vec3>& x,
                          std::span<const double> tet_volume);
   // Multiplies every k; start() takes that back.
@@ -87,15 +87,15 @@ class Constraints {
   Index contacts() const;  // contacts with a force
   // Stores the multipliers in the state, and the forces of bodies on obstacles.
   void store(State& state) const;
-  ContactConstraints& touching() { return contacts_; }
-  const ContactConstraints& touching() const { return contacts_; }
+  ContactConstraints& contact_constraints() { return contacts_; }
+  const ContactConstraints& contact_constraints() const { return contacts_; }
 
  private:
   template <typename Spring, typename Cell>
   void spread(const std::vector<Vec3>& x, const Spring& spring, const Cell& cell,
               const TetVolumes& tets, std::vector<Vec3>& force) const;
-  double spring_pull(std::size_t k, double length) const;
-  double cell_pull(std::size_t c, double volume) const;
+  double spring_tension(std::size_t k, double length) const;
+  double cell_pressure(std::size_t c, double volume) const;
 
   const Model& model_;
   double hardness_ = 1.0;
@@ -109,6 +109,6 @@ class Constraints {
 };
 
 // Whether any reaction is not zero.
-bool act(const Reactions& reactions);
+bool any_active(const Reactions& reactions);
 
 }  // namespace sinew

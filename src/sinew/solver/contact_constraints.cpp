@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/model/mean_edge.h"
 #include "sinew/solver/bound.h"
-#include "sinew/solver/mean_edge.h"
 
 namespace sinew {
 namespace {
 
-// The depth tolerance, and the gap below which contacts are included before they touch, as shares
-// of the mean edge. Planes are included at any distance: see ContactReach.
+// The depth tolerance, and the gap below which contacts are included before their gap is 0, as
+// shares of the mean edge. Planes are included at any distance: see ContactReach.
 constexpr double depth_tolerance = 1e-4;
 constexpr double reach_share = 0.05;
 // The number of passes that find all contacts again; later passes only add contacts.
@@ -44,30 +44,30 @@ void ContactConstraints::start(const Controls& controls, const State& state,
   now_ = state.time;
   before_ = state.time - step;
   if (from == nullptr) here_ = state.position;
-  held_.clear();
-  for (const ContactPush& p : state.reactions.contacts) {
-    Held h;
+  constraints_.clear();
+  for (const ContactForce& p : state.reactions.contacts) {
+    Constraint h;
     h.contact.id = p.id;
-    h.push = p.push;
-    held_.push_back(h);
+    h.force = p.force;
+    constraints_.push_back(h);
   }
   find(controls, state.position);
 }
 
-ContactConstraints::Held ContactConstraints::hold(const Contact& c) const {
-  Held h;
+ContactConstraints::Constraint ContactConstraints::constraint_of(const Contact& c) const {
+  Constraint h;
   h.contact = c;
   if (!friction_) h.contact.friction = 0.0;
   double sum = 0.0;
   for_each_node(c, [&](std::size_t i, double w) { sum += w * w * compliance_[i]; });
   h.stiffness = sum > 0.0 ? ratio_ / sum : 0.0;
-  h.start = c.way - c.anchor;  // with the anchor at the start of the step
+  h.start = c.anchor_displacement - c.anchor;  // with the anchor at the start of the step
   const std::vector<Vec3>& from = from_ != nullptr ? *from_ : here_;
   for_each_node(c, [&](std::size_t i, double w) { h.start += w * from[i]; });
   return h;
 }
 
-// Contacts at x; what they push with is that of the same pair before, or of the same feature where
+// Contacts at x; their force is that of the same pair before, or of the same feature where
 // it has gone on to another part of its owner.
 void ContactConstraints::find(const Controls& controls, const std::vector<Vec3>& x) {
   finder_->find(controls, from_ != nullptr ? *from_ : here_, x, before_, now_, {reach_, no_limit},
@@ -76,109 +76,113 @@ void ContactConstraints::find(const Controls& controls, const std::vector<Vec3>&
     add_new();
     return;
   }
-  std::vector<Held> next;
-  std::vector<char> taken(held_.size(), 0);
+  std::vector<Constraint> next;
+  std::vector<char> taken(constraints_.size(), 0);
   const auto place = [&](const ContactId& id) {
-    return std::lower_bound(held_.begin(), held_.end(), id,
-                            [](const Held& h, const ContactId& i) { return h.contact.id < i; });
+    return std::lower_bound(
+        constraints_.begin(), constraints_.end(), id,
+        [](const Constraint& h, const ContactId& i) { return h.contact.id < i; });
   };
   for (const Contact& c : found_) {
-    next.push_back(hold(c));
+    next.push_back(constraint_of(c));
     const auto same = place(c.id);
-    if (same == held_.end() || same->contact.id != c.id) continue;
-    taken[static_cast<std::size_t>(same - held_.begin())] = 1;
-    next.back().push = same->push;
+    if (same == constraints_.end() || same->contact.id != c.id) continue;
+    taken[static_cast<std::size_t>(same - constraints_.begin())] = 1;
+    next.back().force = same->force;
   }
-  for (Held& h : next) {
+  for (Constraint& h : next) {
     const ContactId& id = h.contact.id;
-    if (h.push.isZero(0.0)) {
+    if (h.force.isZero(0.0)) {
       auto k = place(id);
-      while (k != held_.begin() && std::prev(k)->contact.id.same_feature(id)) --k;
-      for (; k != held_.end() && k->contact.id.same_feature(id); ++k) {
-        char& used = taken[static_cast<std::size_t>(k - held_.begin())];
+      while (k != constraints_.begin() && std::prev(k)->contact.id.same_feature(id)) --k;
+      for (; k != constraints_.end() && k->contact.id.same_feature(id); ++k) {
+        char& used = taken[static_cast<std::size_t>(k - constraints_.begin())];
         if (used != 0) continue;
         used = 1;
-        h.push = k->push;
+        h.force = k->force;
         break;
       }
     }
     const Vec3& n = h.contact.normal;
-    const double normal = std::max(0.0, n.dot(h.push));
-    h.push = h.push - n.dot(h.push) * n;  // tangential
-    h.grip = h.contact.friction * normal;
-    const double size = h.push.norm();
-    if (size > h.grip) h.push *= h.grip / size;
-    h.push += normal * n;
+    const double normal = std::max(0.0, n.dot(h.force));
+    h.force = h.force - n.dot(h.force) * n;  // tangential
+    h.friction_bound = h.contact.friction * normal;
+    const double size = h.force.norm();
+    if (size > h.friction_bound) h.force *= h.friction_bound / size;
+    h.force += normal * n;
   }
-  held_ = std::move(next);
+  constraints_ = std::move(next);
 }
 
-// Adds only the pairs that are not held yet; the held contacts do not change.
+// Adds only the pairs that are not there yet; the others do not change.
 void ContactConstraints::add_new() {
-  const auto before = [](const Held& a, const Held& b) {
+  const auto before = [](const Constraint& a, const Constraint& b) {
     return comes_before(a.contact, b.contact);
   };
-  const auto held = std::ssize(held_);
+  const auto old = std::ssize(constraints_);
   for (const Contact& c : found_) {
-    const Held h = hold(c);
-    if (!std::binary_search(held_.begin(), held_.begin() + held, h, before)) held_.push_back(h);
+    const Constraint h = constraint_of(c);
+    if (!std::binary_search(constraints_.begin(), constraints_.begin() + old, h, before))
+      constraints_.push_back(h);
   }
-  std::sort(held_.begin(), held_.end(), before);
+  std::sort(constraints_.begin(), constraints_.end(), before);
 }
 
 // The tangential displacement of the contact since the start of the step [m].
-Vec3 ContactConstraints::slip(const Held& h, const std::vector<Vec3>& x) const {
-  const Vec3 way = contact_offset(h.contact, x) - h.start;
-  return way - h.contact.normal.dot(way) * h.contact.normal;
+Vec3 ContactConstraints::slip(const Constraint& h, const std::vector<Vec3>& x) const {
+  const Vec3 displacement = contact_offset(h.contact, x) - h.start;
+  return displacement - h.contact.normal.dot(displacement) * h.contact.normal;
 }
 
-Vec3 ContactConstraints::push(const Held& h, const std::vector<Vec3>& x) const {
+Vec3 ContactConstraints::force_at(const Constraint& h, const std::vector<Vec3>& x) const {
   const double k = hardness_ * h.stiffness;
   if (k == 0.0) return Vec3::Zero();
   const Vec3& n = h.contact.normal;
-  const double normal = n.dot(h.push);
-  Vec3 out = -bound_pull(contact_gap(h.contact, x), 0.0, no_limit, k, -normal) * n;
-  if (h.grip > 0.0) out -= friction_pull(slip(h, x), h.grip, k, normal * n - h.push);
+  const double normal = n.dot(h.force);
+  Vec3 out = -bound_force(contact_gap(h.contact, x), 0.0, no_limit, k, -normal) * n;
+  if (h.friction_bound > 0.0)
+    out -= friction_force(slip(h, x), h.friction_bound, k, normal * n - h.force);
   return out;
 }
 
 double ContactConstraints::value(const std::vector<Vec3>& x) const {
   double energy = 0.0;
-  for (const Held& h : held_) {
+  for (const Constraint& h : constraints_) {
     const double k = hardness_ * h.stiffness;
     if (k == 0.0) continue;
     const Vec3& n = h.contact.normal;
-    const double normal = n.dot(h.push);
+    const double normal = n.dot(h.force);
     energy += bound_energy(contact_gap(h.contact, x), 0.0, no_limit, k, -normal);
-    if (h.grip > 0.0) energy += friction_energy(slip(h, x), h.grip, k, normal * n - h.push);
+    if (h.friction_bound > 0.0)
+      energy += friction_energy(slip(h, x), h.friction_bound, k, normal * n - h.force);
   }
   return energy;
 }
 
 void ContactConstraints::add_forces(const std::vector<Vec3>& x, std::vector<Vec3>& force) const {
-  for (const Held& h : held_) {
-    const Vec3 p = push(h, x);
+  for (const Constraint& h : constraints_) {
+    const Vec3 p = force_at(h, x);
     for_each_node(h.contact, [&](std::size_t i, double w) { force[i] += w * p; });
   }
 }
 
 void ContactConstraints::add_reactions(std::vector<Vec3>& force) const {
-  for (const Held& h : held_) {
-    for_each_node(h.contact, [&](std::size_t i, double w) { force[i] += w * h.push; });
+  for (const Constraint& h : constraints_) {
+    for_each_node(h.contact, [&](std::size_t i, double w) { force[i] += w * h.force; });
   }
 }
 
 void ContactConstraints::linearise(const std::vector<Vec3>& x) {
   tangents_.clear();
-  for (const Held& h : held_) {
+  for (const Constraint& h : constraints_) {
     const double k = hardness_ * h.stiffness;
     if (k == 0.0) continue;
     const Vec3& n = h.contact.normal;
-    const double normal = n.dot(h.push);
+    const double normal = n.dot(h.force);
     const double along = bound_stiffness(contact_gap(h.contact, x), 0.0, no_limit, k, -normal);
     Mat3 block = along * n * n.transpose();
-    if (h.grip > 0.0) {
-      block += friction_stiffness(slip(h, x), h.grip, k, normal * n - h.push, n);
+    if (h.friction_bound > 0.0) {
+      block += friction_stiffness(slip(h, x), h.friction_bound, k, normal * n - h.force, n);
     }
     if (!block.isZero(0.0)) tangents_.push_back({&h.contact, block});
   }
@@ -201,25 +205,26 @@ ContactConstraints::Change ContactConstraints::update(const Controls& controls,
   Change change;
   if (empty()) return change;
   ++passes_;
-  const auto error = [&](const Held& h, const Vec3& by) {
+  const auto error = [&](const Constraint& h, const Vec3& by) {
     const double k = hardness_ * h.stiffness;
     return k > 0.0 ? by.norm() / (k * tolerance_) : 0.0;
   };
-  double grips = 0.0;
-  double grip_change = 0.0;
-  for (Held& h : held_) {
-    const Vec3 p = push(h, x);
-    change.distance = std::max(change.distance, error(h, p - h.push));
-    h.push = p;
-    const double grip = h.contact.friction * h.contact.normal.dot(p);
-    grip_change += std::abs(grip - h.grip);
-    grips += grip;
-    h.grip = 0.5 * (h.grip + grip);  // for contacts that stay held: the mean does not oscillate
+  double bounds = 0.0;
+  double bound_change = 0.0;
+  for (Constraint& h : constraints_) {
+    const Vec3 p = force_at(h, x);
+    change.distance = std::max(change.distance, error(h, p - h.force));
+    h.force = p;
+    const double bound = h.contact.friction * h.contact.normal.dot(p);
+    bound_change += std::abs(bound - h.friction_bound);
+    bounds += bound;
+    // For contacts that stay: the mean does not oscillate.
+    h.friction_bound = 0.5 * (h.friction_bound + bound);
   }
-  if (grip_change > 0.0) {
-    change.grip = grips > 0.0 ? grip_change / (grip_tolerance * grips) : no_limit;
+  if (bound_change > 0.0) {
+    change.friction = bounds > 0.0 ? bound_change / (friction_tolerance * bounds) : no_limit;
   }
-  // New contacts push at other places, or are too deep and have no force yet.
+  // New contacts act at other places, or are too deep and have no force yet.
   std::vector<Vec3> difference(x.size(), Vec3::Zero());
   add_reactions(difference);
   for (Vec3& f : difference) f = -f;
@@ -228,54 +233,56 @@ ContactConstraints::Change ContactConstraints::update(const Controls& controls,
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (compliance_[i] == 0.0 || difference[i].isZero(0.0)) continue;
     const double k = hardness_ * ratio_ / compliance_[i];
-    change.anew = std::max(change.anew, difference[i].norm() / (k * tolerance_));
+    change.changed_contacts =
+        std::max(change.changed_contacts, difference[i].norm() / (k * tolerance_));
   }
-  for (const Held& h : held_) {
-    if (h.push.isZero(0.0)) {
-      change.anew = std::max(change.anew, -contact_gap(h.contact, x) / tolerance_);
+  for (const Constraint& h : constraints_) {
+    if (h.force.isZero(0.0)) {
+      change.changed_contacts =
+          std::max(change.changed_contacts, -contact_gap(h.contact, x) / tolerance_);
     }
   }
   // A force error due to changed contacts is no reason to harden.
-  if (change.anew > 1.0) {
-    change.anew = std::max(change.anew, change.distance);
+  if (change.changed_contacts > 1.0) {
+    change.changed_contacts = std::max(change.changed_contacts, change.distance);
     change.distance = 0.0;
   }
   return change;
 }
 
-std::vector<ContactPush> ContactConstraints::pushes() const {
-  std::vector<ContactPush> out;
-  for (const Held& h : held_) {
-    if (h.push.isZero(0.0)) continue;
+std::vector<ContactForce> ContactConstraints::contact_forces() const {
+  std::vector<ContactForce> out;
+  for (const Constraint& h : constraints_) {
+    if (h.force.isZero(0.0)) continue;
     const Contact& c = h.contact;
-    out.push_back({c.id, c.node, c.weight, h.push});
+    out.push_back({c.id, c.node, c.weight, h.force});
   }
   return out;
 }
 
 double ContactConstraints::deepest(const std::vector<Vec3>& x) const {
   double depth = 0.0;
-  for (const Held& h : held_) depth = std::max(depth, -contact_gap(h.contact, x));
+  for (const Constraint& h : constraints_) depth = std::max(depth, -contact_gap(h.contact, x));
   return depth;
 }
 
 void ContactConstraints::add_obstacle_forces(std::vector<Vec3>& force) const {
-  for (const Held& h : held_) {
+  for (const Constraint& h : constraints_) {
     const Index obstacle = h.contact.id.obstacle();
-    if (obstacle >= 0) force[uz(obstacle)] -= h.push;
+    if (obstacle >= 0) force[uz(obstacle)] -= h.force;
   }
 }
 
 double ContactConstraints::work_of_obstacles() const {
   double work = 0.0;
-  for (const Held& h : held_) work += h.push.dot(h.contact.way);
+  for (const Constraint& h : constraints_) work += h.force.dot(h.contact.anchor_displacement);
   return work;
 }
 
 double ContactConstraints::work_of_friction(const std::vector<Vec3>& x) const {
   double work = 0.0;
-  for (const Held& h : held_) {
-    if (h.grip > 0.0) work -= h.push.dot(slip(h, x));
+  for (const Constraint& h : constraints_) {
+    if (h.friction_bound > 0.0) work -= h.force.dot(slip(h, x));
   }
   return work;
 }

@@ -27,8 +27,8 @@ class ContactConstraints {
 
   bool empty() const { return !finder_; }
 
-  // Takes the pushes of the state's last step. from: where the step starts [m] (nodes), null: rest
-  // states, without friction; `step` [s] before state.time.
+  // Takes the contact forces of the state's last step. from: where the step starts [m] (nodes),
+  // null: rest states, without friction; `step` [s] before state.time.
   void start(const Controls& controls, const State& state, const std::vector<Vec3>* from,
              double step);
 
@@ -46,17 +46,17 @@ class ContactConstraints {
   const std::vector<Tangent>& tangents() const { return tangents_; }
 
   // Takes the forces at x as the multipliers and finds the contacts at x. Returns the change of the
-  // forces as a multiple of the tolerance; `grip`: the same for the normal forces that bound
+  // forces as a multiple of the tolerance; `friction`: the same for the normal forces that bound
   // friction.
   struct Change {
     double distance = 0.0;
-    double grip = 0.0;
-    double anew = 0.0;  // error due to contacts that were found again
+    double friction = 0.0;
+    double changed_contacts = 0.0;  // error due to contacts that were found again
   };
   Change update(const Controls& controls, const std::vector<Vec3>& x);
   void harden(double factor) { hardness_ *= factor; }
 
-  std::vector<ContactPush> pushes() const;                   // the contacts with a force
+  std::vector<ContactForce> contact_forces() const;          // the contacts with a force
   double deepest(const std::vector<Vec3>& x) const;          // [m]
   void add_obstacle_forces(std::vector<Vec3>& force) const;  // of the bodies on obstacles [N]
   // Work of the contact forces on the motion of the obstacles' surfaces, and against the slip [J].
@@ -64,18 +64,18 @@ class ContactConstraints {
   double work_of_friction(const std::vector<Vec3>& x) const;
 
  private:
-  struct Held {
+  struct Constraint {
     Contact contact;
-    double stiffness = 0.0;  // [N/m]
-    double grip = 0.0;       // bound of friction: mu times the normal force of the pass before [N]
-    Vec3 push = Vec3::Zero();   // multiplier, force of the contact [N]
-    Vec3 start = Vec3::Zero();  // contact_offset, also the anchor, at the start of the step [m]
+    double stiffness = 0.0;       // [N/m]
+    double friction_bound = 0.0;  // mu times the normal force of the pass before [N]
+    Vec3 force = Vec3::Zero();    // multiplier, force of the contact [N]
+    Vec3 start = Vec3::Zero();    // contact_offset, also the anchor, at the start of the step [m]
   };
   void find(const Controls& controls, const std::vector<Vec3>& x);
   void add_new();
-  Held hold(const Contact& c) const;
-  Vec3 slip(const Held& h, const std::vector<Vec3>& x) const;
-  Vec3 push(const Held& h, const std::vector<Vec3>& x) const;
+  Constraint constraint_of(const Contact& c) const;
+  Vec3 slip(const Constraint& h, const std::vector<Vec3>& x) const;
+  Vec3 force_at(const Constraint& h, const std::vector<Vec3>& x) const;
 
   const Model& model_;
   double ratio_ = 0.0;
@@ -90,7 +90,7 @@ class ContactConstraints {
   std::vector<Vec3> here_;           // replaces `from` in rest states [m] (nodes)
   double before_ = 0.0, now_ = 0.0;  // times of the step [s]
   std::vector<Contact> found_;
-  std::vector<Held> held_;  // by id
+  std::vector<Constraint> constraints_;  // by id
   std::vector<Tangent> tangents_;
 };
 

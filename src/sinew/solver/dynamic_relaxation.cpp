@@ -20,7 +20,7 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
   constexpr int few = 10;        // Newton steps
   constexpr double near = 1e-4;  // Newton's method is tried below this share of the load
   double h = 1.0 / 30.0;         // [s]
-  double pull = 1.0;             // the force that still moves the body, as a share of the load
+  double residual = 1.0;         // the force that still moves the body, as a share of the load
   double fastest = 0.0;          // |v|^2
   const Field outer = outer_forces(model_, controls, state);
   double load = std::sqrt(dot(outer, outer));  // [N]
@@ -28,7 +28,7 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
   report.products = move_pins_to(controls, start_time, time, 1.0, state);
   Field velocity(state.position.size(), Vec3::Zero());
   Field inertial;
-  const auto stand_still = [&] {
+  const auto stop_motion = [&] {
     std::fill(velocity.begin(), velocity.end(), Vec3::Zero());
     fastest = 0.0;
   };
@@ -42,7 +42,7 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
     if (!constraints_.empty()) objective.constraints = &constraints_;
     constraints_.start(controls, state, nullptr, 0.0);
     state.position = inertial;
-    const double tolerance = std::clamp(0.1 * pull, options.tolerance, 1e-3);
+    const double tolerance = std::clamp(0.1 * residual, options.tolerance, 1e-3);
     const NewtonReport step = minimise_augmented_lagrangian(
         objective, linear_, {tolerance, 3 * few, options.stop, {}}, forces_, state);
     report.newton += step.newton;
@@ -51,7 +51,7 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
     if (step.stopped) return report;
     if (!step.rests) {
       state = before;
-      stand_still();
+      stop_motion();
       h *= 0.5;
       continue;
     }
@@ -62,9 +62,9 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
       return k * k * (state.position[uz(i)] - inertial[uz(i)]).squaredNorm();
     });
     if (load == 0.0) load = std::max(std::sqrt(force), 1e-300);  // only pins have moved
-    pull = std::sqrt(force) / load;
+    residual = std::sqrt(force) / load;
     progress.newton += step.newton;
-    progress.residual = pull;
+    progress.residual = residual;
     if (options.on_progress) options.on_progress(progress);
     if (step.newton < few) h *= 1.2;
     const double speed = dot(velocity, velocity);
@@ -72,8 +72,8 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
       fastest = speed;
       continue;
     }
-    stand_still();
-    if (pull > near) continue;
+    stop_motion();
+    if (residual > near) continue;
     const State here = state;
     const NewtonReport rest =
         settle({model_, controls}, {options.tolerance, options.max_newton, options.stop, {}},

@@ -40,9 +40,10 @@ void move_pins(const Model& model, const Controls& controls, State& state) {
 }
 
 // What loads, pins, soft obstacles and tools put in since the time `since`: their forces at its end
-// along the way. pull: of the model and the constraints on all nodes at the end [N].
+// along the displacement. nodal_force: of the model and the constraints on all nodes at the end
+// [N].
 double work_of_the_outside(const Model& model, const Controls& controls, const Field& before,
-                           double since, const State& state, const Field& pull) {
+                           double since, const State& state, const Field& nodal_force) {
   double work = 0.0;
   for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& force) {
     if (model.inverse_mass[uz(node)] > 0.0) {
@@ -51,7 +52,7 @@ double work_of_the_outside(const Model& model, const Controls& controls, const F
   });
   for (const Pin& pin : model.pins) {
     for (const Index node : pin.nodes) {
-      work -= pull[uz(node)].dot(state.position[uz(node)] - before[uz(node)]);
+      work -= nodal_force[uz(node)].dot(state.position[uz(node)] - before[uz(node)]);
     }
   }
   for_each_work_on_spheres(configuration(model, controls, state), since, state.time,
@@ -94,33 +95,33 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
     constrained_inertia_ = about;
   }
   constraints_->start(controls, state, &path, path_time);
-  const Field lag = state.position;
+  const Field lagged = state.position;
   const Field inertial = blend(1.0, from, h, velocity);
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
   const Objective objective{
-      model_,    controls, nullptr, 0.0,  inertia,
-      &inertial, 1.0 / h,  &from,   &lag, constraints_->empty() ? nullptr : constraints_.get()};
+      model_,    controls, nullptr, 0.0,     inertia,
+      &inertial, 1.0 / h,  &from,   &lagged, constraints_->empty() ? nullptr : constraints_.get()};
   const NewtonOptions newton_options{
       options.tolerance, options.max_newton, nullptr, {}, options.deadline};
   const bool single = options.single && may_take_single(model_, options.tolerance);
   if (single && !in_single_) in_single_.emplace(model_, Precision::single);
   ForceEvaluator& forces = single ? *in_single_ : forces_;
   move_pins(model_, controls, state);
-  const Field stand = state.position;
-  const double standing = options.deadline ? objective_value(objective, state, forces) : 0.0;
+  const Field start = state.position;
+  const double start_value = options.deadline ? objective_value(objective, state, forces) : 0.0;
   // Starts from the inertial positions; with a deadline only if their objective is below that of
   // the current ones.
   state.position = inertial;
   move_pins(model_, controls, state);
-  if (options.deadline && !(objective_value(objective, state, forces) < standing)) {
-    state.position = stand;
+  if (options.deadline && !(objective_value(objective, state, forces) < start_value)) {
+    state.position = start;
   }
   NewtonReport newton =
       minimise_augmented_lagrangian(objective, linear_, newton_options, forces, state);
   report.newton += newton.newton;
   report.products += newton.products;
   if (!newton.rests && !options.deadline) {  // starts again from the old positions
-    state.position = stand;
+    state.position = start;
     constraints_->start(controls, state, &path, path_time);
     newton = minimise_augmented_lagrangian(objective, linear_, newton_options, forces_, state);
     report.newton += newton.newton;
@@ -129,20 +130,20 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
   report.residual = std::max(report.residual, newton.residual);
   report.ran_out = report.ran_out || newton.ran_out;
   report.contacts = constraints_->contacts();
-  report.deepest = constraints_->touching().deepest(state.position);
+  report.deepest = constraints_->contact_constraints().deepest(state.position);
   report.limits_met = report.limits_met && newton.within;
   constraints_->store(state);
   state.half_velocity = blend(1.0 / h, state.position, -1.0 / h, from);
   const bool taken = newton.rests || (options.deadline && newton.force < no_limit);
   if (!taken) return std::nullopt;
-  return std::move(newton.pull);
+  return std::move(newton.nodal_force);
 }
 
-// Heat of dashpots and drag by the scheme's own weights, work along the way from `before`.
+// Heat of dashpots and drag by the scheme's own weights, work along the displacement from `before`.
 void ImplicitStepper::account(const Controls& controls, const Field& before, double since,
-                              double weight, const Field& pull, State& state) {
+                              double weight, const Field& nodal_force, State& state) {
   state.energy.dissipated += weight * damping_power(model_, before, state.half_velocity);
-  state.energy.work_in += work_of_the_outside(model_, controls, before, since, state, pull);
+  state.energy.work_in += work_of_the_outside(model_, controls, before, since, state, nodal_force);
 }
 
 bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitOptions& options,
@@ -152,20 +153,21 @@ bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitO
   const double time = state.time;
   const double g = sdirk2_share;
   state.time = time + g * h;
-  auto pull = solve(x, v, g * h, x, g * h, controls, options, state, report);
-  if (!pull) return false;
-  if (act(state.reactions)) return true;
+  auto nodal_force = solve(x, v, g * h, x, g * h, controls, options, state, report);
+  if (!nodal_force) return false;
+  if (any_active(state.reactions)) return true;
   const Field v1 = state.half_velocity;
-  account(controls, x, time, (1.0 - g) * h, *pull, state);
+  account(controls, x, time, (1.0 - g) * h, *nodal_force, state);
   const Field x1 = state.position;
   state.time = time + h;
   // The second part starts from extrapolated positions, which may be beyond a thin body or
   // obstacle. Contacts are searched from the end of the first part. One that acts leads to backward
   // Euler.
-  pull = solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
-               g * h, x1, (1.0 - g) * h, controls, options, state, report);
-  if (!pull) return false;
-  account(controls, x1, time + g * h, g * h, *pull, state);
+  nodal_force =
+      solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
+            g * h, x1, (1.0 - g) * h, controls, options, state, report);
+  if (!nodal_force) return false;
+  account(controls, x1, time + g * h, g * h, *nodal_force, state);
   return true;
 }
 
@@ -175,20 +177,20 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
   const Field x = state.position;
   const Field v = state.half_velocity;
   state.time += h;
-  const auto pull = solve(x, v, h, x, h, controls, options, state, report);
-  if (!pull) return false;
-  account(controls, x, state.time - h, h, *pull, state);
+  const auto nodal_force = solve(x, v, h, x, h, controls, options, state, report);
+  if (!nodal_force) return false;
+  account(controls, x, state.time - h, h, *nodal_force, state);
   if (constraints_->empty()) return true;
   // The work of the impulses of contacts and limits uses the mean of the velocities before and
   // after the step, as in Verlet's energy balance: it is 0 for a body at rest.
-  Field push(x.size(), Vec3::Zero());
-  constraints_->add_reactions(state.position, forces_.tets(state.position), push);
-  keep_free(model_, push);
-  state.energy.dissipated -= 0.5 * h * (dot(push, v) + dot(push, state.half_velocity));
-  const double moved = constraints_->touching().work_of_obstacles();
+  Field reaction(x.size(), Vec3::Zero());
+  constraints_->add_reactions(state.position, forces_.tets(state.position), reaction);
+  keep_free(model_, reaction);
+  state.energy.dissipated -= 0.5 * h * (dot(reaction, v) + dot(reaction, state.half_velocity));
+  const double moved = constraints_->contact_constraints().work_of_obstacles();
   state.energy.work_in += moved;
   state.energy.dissipated += moved;
-  report.friction += constraints_->touching().work_of_friction(state.position);
+  report.friction += constraints_->contact_constraints().work_of_friction(state.position);
   return true;
 }
 
@@ -196,10 +198,10 @@ bool ImplicitStepper::try_step(double h, const Controls& controls, const Implici
                                State& state, StepReport& report) {
   state.last_step = 0.0;  // the velocity is that at state.time
   bool done = false;
-  if (options.scheme == Scheme::sdirk2 && !act(state.reactions)) {
+  if (options.scheme == Scheme::sdirk2 && !any_active(state.reactions)) {
     const State before = state;
     if (!sdirk2(h, controls, options, state, report)) return false;
-    done = !act(state.reactions);
+    done = !any_active(state.reactions);
     if (!done) state = before;
   }
   if (!done && !backward_euler(h, controls, options, state, report)) return false;
@@ -210,7 +212,7 @@ bool ImplicitStepper::try_step(double h, const Controls& controls, const Implici
 StepReport ImplicitStepper::step(double h, const Controls& controls, const ImplicitOptions& options,
                                  State& state) {
   const std::vector<Index> tangled = find_tangled(model_, find_low_tets(model_, state.position));
-  if (!tangled.empty()) return lead_back(tangled, h, controls, options, state);
+  if (!tangled.empty()) return recover(tangled, h, controls, options, state);
   return advance(h, controls, options, state);
 }
 

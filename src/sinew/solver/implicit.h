@@ -62,8 +62,8 @@ class ImplicitStepper {
  private:
   StepReport advance(double h, const Controls& controls, const ImplicitOptions& options,
                      State& state);
-  StepReport lead_back(std::span<const Index> tangled, double h, const Controls& controls,
-                       const ImplicitOptions& options, State& state);
+  StepReport recover(std::span<const Index> tangled, double h, const Controls& controls,
+                     const ImplicitOptions& options, State& state);
   bool try_step(double h, const Controls& controls, const ImplicitOptions& options, State& state,
                 StepReport& report);
   bool sdirk2(double h, const Controls& controls, const ImplicitOptions& options, State& state,
@@ -71,7 +71,7 @@ class ImplicitStepper {
   bool backward_euler(double h, const Controls& controls, const ImplicitOptions& options,
                       State& state, StepReport& report);
   void account(const Controls& controls, const Field& before, double since, double weight,
-               const Field& pull, State& state);
+               const Field& nodal_force, State& state);
   std::optional<Field> solve(const Field& from, const Field& velocity, double h, const Field& path,
                              double path_time, const Controls& controls,
                              const ImplicitOptions& options, State& state, StepReport& report);

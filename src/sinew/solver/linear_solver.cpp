@@ -16,7 +16,7 @@ LinearSolver::LinearSolver(const Model& model)
     const double side = std::cbrt(model.rest_volume[t]);
     const double resistance = model.tet_modulus[t] * side;
     resistance2_ += resistance * resistance;
-    pull2_ += resistance * resistance * side * side;
+    force2_ += resistance * resistance * side * side;
   }
 }
 
@@ -24,7 +24,7 @@ void LinearSolver::factor(const Objective& objective, double time) {
   if (is_factored(objective)) return;
   const Field& rest_position = objective.model.rest_position;
   Objective rest = objective;
-  rest.lag = &rest_position;
+  rest.lagged = &rest_position;
   rest.constraints = nullptr;
   // The last digits of a step differ from frame to frame. Rounded, the kept factors are the same as
   // those that a resumed run computes again.

@@ -30,7 +30,7 @@ class LinearSolver {
 
   // The scale of the tets' forces and of their resistance, as sums over the tets of (mu V^(2/3))^2
   // [N2] and of (mu V^(1/3))^2 [N2/m2].
-  double pull2() const { return pull2_; }
+  double force2() const { return force2_; }
   double resistance2() const { return resistance2_; }
 
  private:
@@ -40,7 +40,7 @@ class LinearSolver {
   TwoLevel preconditioner_;
   const Model* factored_model_ = nullptr;  // the model of the factors in preconditioner_
   float factored_inertia_ = -1.0f;
-  double pull2_ = 0.0;
+  double force2_ = 0.0;
   double resistance2_ = 0.0;
   Field4 r_, z_, d_, q_, p_;  // residual, P^-1 r, direction, K d, solution
 };

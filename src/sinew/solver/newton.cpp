@@ -44,16 +44,16 @@ constexpr int most_products =
 constexpr double reach_in_bodies = 10.0;
 
 // The displacement x - from.
-Field way(const Objective& objective, const State& state) {
+Field displacement(const Objective& objective, const State& state) {
   Field u(state.position);
   add(u, -1.0, *objective.from);
   return u;
 }
 
-// out = C u, dashpots and viscosity at objective.lag, and drag.
+// out = C u, dashpots and viscosity at objective.lagged, and drag.
 Field damping_times(const Objective& objective, const Field& u, ForceEvaluator& forces) {
   Field out(u.size());
-  forces.products().damping_times({objective.model, objective.controls, *objective.lag}, u, out);
+  forces.products().damping_times({objective.model, objective.controls, *objective.lagged}, u, out);
   return out;
 }
 
@@ -73,7 +73,8 @@ double rounding_force(const Objective& objective, const LinearSolver& linear, co
 
 // The norm of the carried forces, see minimise(). material: the square of the tets' forces at a
 // strain of 1e-5 [N2].
-double carried(const Objective& objective, double material, const State& state, const Field& pull) {
+double carried(const Objective& objective, double material, const State& state,
+               const Field& nodal_force) {
   const Model& model = objective.model;
   const Field outer = outer_forces(model, objective.controls, state);
   double inertial = 0.0;
@@ -86,7 +87,7 @@ double carried(const Objective& objective, double material, const State& state, 
     });
   }
   const double reactions = parallel_sum(model.node_count(), [&](Index i) {
-    return model.inverse_mass[uz(i)] == 0.0 ? pull[uz(i)].squaredNorm() : 0.0;
+    return model.inverse_mass[uz(i)] == 0.0 ? nodal_force[uz(i)].squaredNorm() : 0.0;
   });
   return std::sqrt(std::max({dot(outer, outer), inertial, reactions, material}));
 }
@@ -188,7 +189,8 @@ double objective_value(const Objective& objective, const State& state, ForceEval
          });
   }
   if (objective.rate > 0.0) {
-    e += 0.5 * objective.rate * damping_power(model, *objective.lag, way(objective, state));
+    e += 0.5 * objective.rate *
+         damping_power(model, *objective.lagged, displacement(objective, state));
   }
   if (objective.constraints != nullptr) {
     e += objective.constraints->value(state.position, tet_volume);
@@ -200,14 +202,15 @@ ObjectiveForce objective_force(const Objective& objective, const State& state,
                                ForceEvaluator& forces) {
   const Model& model = objective.model;
   ObjectiveForce found;
-  found.pull = forces.evaluate(objective.controls, state).force;
+  found.nodal_force = forces.evaluate(objective.controls, state).force;
   if (objective.constraints != nullptr) {
-    objective.constraints->add_forces(state.position, forces.tets(state.position), found.pull);
+    objective.constraints->add_forces(state.position, forces.tets(state.position),
+                                      found.nodal_force);
   }
-  found.free = found.pull;
+  found.free = found.nodal_force;
   Field& f = found.free;
   if (objective.rate > 0.0)
-    add(f, -objective.rate, damping_times(objective, way(objective, state), forces));
+    add(f, -objective.rate, damping_times(objective, displacement(objective, state), forces));
   if (objective.share != 0.0) add(f, -objective.share, *objective.dead_force);
   if (objective.inertia > 0.0) {
     parallel_for(model.node_count(), [&](Index i) {
@@ -227,7 +230,7 @@ NewtonReport newton_steps(const Objective& objective, LinearSolver& linear,
                           ObjectiveForce& f) {
   NewtonReport report;
   const Reach reach(objective.model, state);
-  const double material = 1e-10 * linear.pull2();
+  const double material = 1e-10 * linear.force2();
   const double rounding = rounding_force(objective, linear, state);
   const Clock::time_point start = Clock::now();
   f = objective_force(objective, state, forces);
@@ -237,7 +240,7 @@ NewtonReport newton_steps(const Objective& objective, LinearSolver& linear,
   Field p;
   for (;;) {
     report.force = std::sqrt(dot(f.free, f.free));
-    const double scale = carried(objective, material, state, f.pull);
+    const double scale = carried(objective, material, state, f.nodal_force);
     report.residual = report.force == 0.0 ? 0.0 : report.force / scale;
     if (options.on_progress) options.on_progress({report.newton, report.residual});
     if (!(report.force < no_limit) || !reach.holds(state)) return report;
@@ -260,7 +263,7 @@ NewtonReport minimise(const Objective& objective, LinearSolver& linear,
                       const NewtonOptions& options, ForceEvaluator& forces, State& state) {
   ObjectiveForce f;
   NewtonReport report = newton_steps(objective, linear, options, forces, state, f);
-  report.pull = std::move(f.pull);
+  report.nodal_force = std::move(f.nodal_force);
   return report;
 }
 

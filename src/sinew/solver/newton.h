@@ -22,7 +22,7 @@ class LinearSolver;
 //   share sum_i f_i . (x_i - X_i)            a dead force that is removed in load steps
 //   inertia/2 sum_i m_i |x_i - y_i|^2        of an implicit step, inertia = 1/h^2
 //   rate/2 (x - from) . C (x - from)         dashpots, viscosity and drag over that step,
-//                                            rate = 1/h, with dashpots and viscosity at `lag`
+//                                            rate = 1/h, with dashpots and viscosity at `lagged`
 //   the energies of `constraints` for their current multipliers
 struct Objective {
   const Model& model;
@@ -33,7 +33,7 @@ struct Objective {
   const Field* inertial = nullptr;    // y [m]
   double rate = 0.0;                  // [1/s]
   const Field* from = nullptr;        // [m]
-  const Field* lag = nullptr;         // [m]
+  const Field* lagged = nullptr;      // [m]
   Constraints* constraints = nullptr;
 };
 
@@ -41,8 +41,8 @@ struct Objective {
 double objective_value(const Objective& objective, const State& state, ForceEvaluator& forces);
 
 struct ObjectiveForce {
-  Field free;  // minus the gradient of the objective on the free nodes, 0 on the others [N]
-  Field pull;  // forces of the model and the constraints on all nodes [N]
+  Field free;         // minus the gradient of the objective on the free nodes, 0 on the others [N]
+  Field nodal_force;  // forces of the model and the constraints on all nodes [N]
 };
 ObjectiveForce objective_force(const Objective& objective, const State& state,
                                ForceEvaluator& forces);
@@ -73,7 +73,7 @@ struct NewtonReport {
   double force = 0.0;     // remaining |force| [N]
   double residual = 0.0;  // relative to the forces that are carried [-]
   bool within = true;     // the constraints hold (minimise_augmented_lagrangian)
-  Field pull;             // forces of the model and the constraints on all nodes at the end [N]
+  Field nodal_force;      // forces of the model and the constraints on all nodes at the end [N]
 };
 
 // Moves the free nodes of the state to a minimum near their positions.

@@ -138,7 +138,9 @@ double positive_root(double a, double b) {
 
 // Row sums of the absolute values of K of network and volume, one per node: over the pairs for L,
 // over tets and cells for kappa/V (grad V)(grad V)^T and for s d2v/dx2, whose blocks are the cross
-// product matrices of the opposite edges over 6.
+// product matrices of the opposite edges over 6. Every tet gives a quarter of itself to each of its
+// cells instead of its cell_share, so where the shares differ the sums are an estimate, not a
+// bound. They only give the iteration of find_stable_step() its start.
 std::vector<double> row_sums(const Model& model, const Field& x) {
   std::vector<double> sums(x.size(), 0.0);
   if (!model.network_start.empty()) {
@@ -183,9 +185,9 @@ std::vector<double> row_sums(const Model& model, const Field& x) {
   return sums;
 }
 
-// A step that is stable for every mesh: per node, the row sums of K and C (Gershgorin).
-double guaranteed_step(const Model& model, const Controls& controls, const Field& x,
-                       Index& stiffest) {
+// The step to start from: per node, the row sums of K and C (Gershgorin's bound, up to the cells in
+// row_sums()).
+double first_step(const Model& model, const Controls& controls, const Field& x, Index& stiffest) {
   std::vector<double> rows = row_sums(model, x);
   for_each_type(Terms{}, [&](auto term) {
     if constexpr (!Bounded<decltype(term)>)
@@ -221,7 +223,7 @@ double guaranteed_step(const Model& model, const Controls& controls, const Field
 StableStep find_stable_step(const Model& model, const Controls& controls, const Field& x,
                             ForceEvaluator& forces) {
   StableStep result;
-  double h = guaranteed_step(model, controls, x, result.stiffest);
+  double h = first_step(model, controls, x, result.stiffest);
   result.step = h;
   if (!std::isfinite(h)) return result;
 

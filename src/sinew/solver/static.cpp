@@ -12,7 +12,7 @@
 #include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
-#include "sinew/solver/mean_edge.h"
+#include "sinew/model/mean_edge.h"
 #include "sinew/solver/newton.h"
 
 namespace sinew {
@@ -158,7 +158,7 @@ std::vector<Resting> resting_groups(const Model& model, const Controls& controls
       throw Error(ErrorKind::input,
                   fmt::format("body '{}' has no rest state: nothing holds it against {:.4g} N{}",
                               model.bodies[b].name, lacks.norm(),
-                              planes ? " (rest states know no friction)" : ""),
+                              planes ? " (rest states ignore friction)" : ""),
                   "pin it, attach it, or take stepper = \"verlet\" or \"implicit\"");
     }
     if (g == b && net[g].norm() > 1e-6 * size[g]) out.push_back({g, best});
@@ -186,7 +186,7 @@ void put_down(const Model& model, const Controls& controls, const std::vector<Re
 
 // The stiffness per mass that holds a body on a plane in its place [1/s2]: see
 // StaticSolver::settle. Under the body's own weight it gives a hundredth of the edge of a mean tet.
-double nudge(const Model& model, const Controls& controls) {
+double proximal_stiffness(const Model& model, const Controls& controls) {
   return 0.01 * controls.gravity.norm() / mean_edge(model);
 }
 
@@ -261,13 +261,13 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
                                   ForceEvaluator& forces, State& state) {
   constraints_.start(objective.controls, state, nullptr, 0.0);
   if (!constraints_.empty()) objective.constraints = &constraints_;
-  objective.inertia = nudge_;
+  objective.inertia = proximal_stiffness_;
   const Field outer = outer_forces(model_, objective.controls, state);
   const double goal = options.tolerance * std::sqrt(dot(outer, outer));
   NewtonReport report;
   for (;;) {
     const Field start = state.position;
-    if (nudge_ > 0.0) objective.inertial = &start;
+    if (proximal_stiffness_ > 0.0) objective.inertial = &start;
     const NewtonReport once =
         minimise_augmented_lagrangian(objective, linear_, options, forces, state);
     constraints_.store(state);
@@ -277,11 +277,11 @@ NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& opti
     report = once;
     report.newton = newton;
     report.products = products;
-    const double pull = parallel_sum(model_.node_count(), [&](Index i) {
-      const double k = nudge_ * model_.mass[uz(i)];
+    const double force2 = parallel_sum(model_.node_count(), [&](Index i) {
+      const double k = proximal_stiffness_ * model_.mass[uz(i)];
       return k * k * (state.position[uz(i)] - start[uz(i)]).squaredNorm();
     });
-    if (!once.rests || once.stopped || std::sqrt(pull) <= goal) return report;
+    if (!once.rests || once.stopped || std::sqrt(force2) <= goal) return report;
     report.rests = newton < 10 * options.most;
     if (!report.rests) return report;
   }
@@ -317,7 +317,7 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
   state.time = time;  // for the loads; the pins follow below
   const std::vector<Resting> resting =
       resting_groups(model_, controls, time, outer_forces(model_, controls, state));
-  nudge_ = resting.empty() ? 0.0 : nudge(model_, controls);
+  proximal_stiffness_ = resting.empty() ? 0.0 : proximal_stiffness(model_, controls);
   put_at_rest_shape(model_, find_tangled(model_, find_low_tets(model_, state.position)), state);
 
   // The dead force makes the start of the solve a rest state, so the change to the new loads can be

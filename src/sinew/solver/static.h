@@ -73,7 +73,7 @@ class StaticSolver {
 
   const Model& model_;
   ForceEvaluator forces_;
-  double nudge_ = 0.0;  // see settle() [1/s2]; 0 if no body rests on a plane alone
+  double proximal_stiffness_ = 0.0;  // see settle() [1/s2]; 0 if no body rests on a plane alone
   LinearSolver linear_;
   Constraints constraints_;
   // The model with a less stiff volume, if that helps; else none.

@@ -27,7 +27,9 @@ std::unique_ptr<Stepper> make_stepper(StepperKind kind, const Model& model,
     case StepperKind::automatic:
       break;
   }
-  throw Error(ErrorKind::internal, "a stepper that is still to be chosen takes no steps");
+  throw Error(
+      ErrorKind::internal,
+      "StepperKind::automatic must be resolved by choose_stepper() before a stepper is made");
 }
 
 }  // namespace sinew

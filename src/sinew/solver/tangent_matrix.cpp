@@ -269,14 +269,14 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
   }
   const bool viscous = !edge_viscous_.empty() && objective.rate > 0.0;
   parallel_for(viscous ? model.viscous_cell_count() : 0, [&](Index cell) {
-    viscous_deformation_[uz(cell)] = viscous_deformation(model, *objective.lag, cell);
+    viscous_deformation_[uz(cell)] = viscous_deformation(model, *objective.lagged, cell);
   });
   const bool dashpots = objective.rate > 0.0;
   if (dashpots) {
-    const Field& lag = *objective.lag;
-    lag_.resize(free_.size());
+    const Field& lagged = *objective.lagged;
+    lagged_.resize(free_.size());
     parallel_for(model.node_count(),
-                 [&](Index i) { lag_[uz(i)] = Float4(Vec3(lag[uz(i)] - lag[0])); });
+                 [&](Index i) { lagged_[uz(i)] = Float4(Vec3(lagged[uz(i)] - lagged[0])); });
   }
   const bool springs = objective.rate > 0.0 || objective.constraints != nullptr || springs_pull_;
   parallel_for(model.node_count(),
@@ -298,7 +298,7 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
     pair[0].column = {Float4(k, w, -v), Float4(-w, k, u), Float4(v, -u, k)};
     pair[1].column = {Float4(k, -w, v), Float4(w, k, -u), Float4(-v, u, k)};
     if (dashpots && edge_dashpot_[e] > 0.0) {
-      const Block3 more = dashpot(lag_[uz(edges_[e][1])] - lag_[uz(edges_[e][0])],
+      const Block3 more = dashpot(lagged_[uz(edges_[e][1])] - lagged_[uz(edges_[e][0])],
                                   static_cast<float>(objective.rate * edge_dashpot_[e]));
       for (std::size_t c = 0; c < 3; ++c) {
         pair[0].column[c] += more.column[c];
@@ -346,7 +346,7 @@ Mat3 TangentMatrix::rare_block(const Objective& objective, const Field& x, const
                (limit.along - limit.across) * limit.direction * limit.direction.transpose();
     }
     const double c = objective.rate * model.damping[s];
-    if (c > 0.0) block += dashpot_block((*objective.lag)[uz(b)] - (*objective.lag)[uz(a)], c);
+    if (c > 0.0) block += dashpot_block((*objective.lagged)[uz(b)] - (*objective.lagged)[uz(a)], c);
   }
   if (edge_viscous_.empty() || objective.rate == 0.0) return block;
   for (auto k = uz(edge_viscous_start_[e]); k < uz(edge_viscous_start_[e + 1]); ++k) {
@@ -409,7 +409,7 @@ void TangentMatrix::assemble_joints(const Objective& objective, const Field& x, 
     pull_[uz(nodes[0])] += weights[0] * weights[0] * block;
   };
   if (objective.constraints != nullptr) {
-    for (const auto& tangent : objective.constraints->touching().tangents()) {
+    for (const auto& tangent : objective.constraints->contact_constraints().tangents()) {
       const auto count = static_cast<std::size_t>(tangent.contact->count);
       add(std::span(tangent.contact->node).first(count),
           std::span(tangent.contact->weight).first(count), tangent.block);
@@ -443,8 +443,8 @@ void TangentMatrix::assemble_nodes(const Objective& objective) {
          model.has_volume && k < uz(node_start_[n + 1]); ++k) {
       const Float4 g = gradient_[uz(node_entry_[k])];
       node_gradient_[k] = g;
-      const Float4 pushed = cell_stiffness_[uz(node_cell_[k])] * g;
-      for (std::size_t c = 0; c < 3; ++c) sum.column[c] += pushed.lanes[c] * g;
+      const Float4 force = cell_stiffness_[uz(node_cell_[k])] * g;
+      for (std::size_t c = 0; c < 3; ++c) sum.column[c] += force.lanes[c] * g;
     }
     inverse_diagonal_[n] = Block3(Mat3(definite(sum.mat3()).inverse()));
   });
@@ -488,10 +488,10 @@ double TangentMatrix::times(const Field4& u, Field4& out) const {
     Float4 place;
     for (auto k = uz(joint.parts.begin); k < uz(joint.parts.end); ++k)
       place += joint_weight_[k] * u[uz(joint_node_[k])];
-    const Float4 push = joint.block * place;
+    const Float4 force = joint.block * place;
     for (auto k = uz(joint.parts.begin); k < uz(joint.parts.end); ++k)
-      out[uz(joint_node_[k])] += joint_weight_[k] * push;
-    sum += static_cast<double>(place.dot(push));
+      out[uz(joint_node_[k])] += joint_weight_[k] * force;
+    sum += static_cast<double>(place.dot(force));
   }
   return sum;
 }

@@ -83,13 +83,13 @@ class TangentMatrix {
   std::vector<std::array<Index, 2>> edge_entries_;  // of B_ab and B_ba (edges)
   std::vector<Index> edge_tet_start_;               // (edges + 1)
   std::vector<AroundEdge> edge_tets_;
-  Field4 lag_;                         // objective.lag, relative to one of the nodes [m] (nodes)
+  Field4 lagged_;                      // objective.lagged, relative to one of the nodes [m] (nodes)
   Field4 position_;                    // x, relative to one of the nodes [m] (nodes)
   std::vector<float> tet_push_;        // s_t / 6 [Pa] (tets)
   std::vector<double> tet_stiffness_;  // of tet_volume_stiffness [Pa] (tets)
   std::vector<Index> edge_viscous_start_;  // (edges + 1), empty if nothing is viscous
   std::vector<ViscousPair> edge_viscous_;
-  std::vector<Mat3> viscous_deformation_;  // F of the cells at objective.lag [-]
+  std::vector<Mat3> viscous_deformation_;  // F of the cells at objective.lagged [-]
   std::vector<double> edge_dashpot_;       // [N s/m] of springs that are only dashpots (edges)
   std::vector<Index> edge_spring_start_, edge_springs_;  // spring ids (edges + 1)
 

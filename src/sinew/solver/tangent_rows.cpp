@@ -18,7 +18,7 @@ typedef Float4::Lanes F4;
 typedef float F8 __attribute__((vector_size(32)));
 typedef float F8Unaligned __attribute__((vector_size(32), aligned(16)));
 
-SINEW_INLINE void cells_loop(const TangentRows& m, const Float4* u, Range cells, float* push) {
+SINEW_INLINE void cells_loop(const TangentRows& m, const Float4* u, Range cells, float* pressure) {
   for (auto c = uz(cells.begin); c < uz(cells.end); ++c) {
     F8 pairs = {0, 0, 0, 0, 0, 0, 0, 0};
     auto k = uz(m.cell_start[c]);
@@ -32,11 +32,11 @@ SINEW_INLINE void cells_loop(const TangentRows& m, const Float4* u, Range cells,
     F4 sum = __builtin_shufflevector(pairs, pairs, 0, 1, 2, 3) +
              __builtin_shufflevector(pairs, pairs, 4, 5, 6, 7);
     if (k < end) sum += m.gradient[k].lanes * u[uz(m.cell_node[k])].lanes;
-    push[c] = m.cell_stiffness[c] * (sum[0] + sum[1] + sum[2]);
+    pressure[c] = m.cell_stiffness[c] * (sum[0] + sum[1] + sum[2]);
   }
 }
 
-SINEW_INLINE double nodes_loop(const TangentRows& m, const Float4* u, const float* push,
+SINEW_INLINE double nodes_loop(const TangentRows& m, const Float4* u, const float* pressure,
                                Range nodes, Float4* out) {
   double power = 0.0;
   for (auto n = uz(nodes.begin); n < uz(nodes.end); ++n) {
@@ -69,7 +69,7 @@ SINEW_INLINE double nodes_loop(const TangentRows& m, const Float4* u, const floa
     sum += (m.own[n] * u[n]).lanes;
     if (m.node_start != nullptr) {
       for (auto k = uz(m.node_start[n]); k < uz(m.node_start[n + 1]); ++k) {
-        const float p = push[uz(m.node_cell[k])];
+        const float p = pressure[uz(m.node_cell[k])];
         sum += F4{p, p, p, p} * m.node_gradient[k].lanes;
       }
     }
@@ -79,26 +79,26 @@ SINEW_INLINE double nodes_loop(const TangentRows& m, const Float4* u, const floa
   return power;
 }
 
-SINEW_AVX2 void cells_avx2(const TangentRows& m, const Float4* u, Range cells, float* push) {
-  cells_loop(m, u, cells, push);
+SINEW_AVX2 void cells_avx2(const TangentRows& m, const Float4* u, Range cells, float* pressure) {
+  cells_loop(m, u, cells, pressure);
 }
 
-SINEW_AVX2 double nodes_avx2(const TangentRows& m, const Float4* u, const float* push, Range nodes,
-                             Float4* out) {
-  return nodes_loop(m, u, push, nodes, out);
+SINEW_AVX2 double nodes_avx2(const TangentRows& m, const Float4* u, const float* pressure,
+                             Range nodes, Float4* out) {
+  return nodes_loop(m, u, pressure, nodes, out);
 }
 
 }  // namespace
 
-void tangent_cells(const TangentRows& rows, const Float4* u, Range cells, float* push) {
-  if (SINEW_HAS_AVX2) return cells_avx2(rows, u, cells, push);
-  cells_loop(rows, u, cells, push);
+void tangent_cells(const TangentRows& rows, const Float4* u, Range cells, float* pressure) {
+  if (SINEW_HAS_AVX2) return cells_avx2(rows, u, cells, pressure);
+  cells_loop(rows, u, cells, pressure);
 }
 
-double tangent_nodes(const TangentRows& rows, const Float4* u, const float* push, Range nodes,
+double tangent_nodes(const TangentRows& rows, const Float4* u, const float* pressure, Range nodes,
                      Float4* out) {
-  if (SINEW_HAS_AVX2) return nodes_avx2(rows, u, push, nodes, out);
-  return nodes_loop(rows, u, push, nodes, out);
+  if (SINEW_HAS_AVX2) return nodes_avx2(rows, u, pressure, nodes, out);
+  return nodes_loop(rows, u, pressure, nodes, out);
 }
 
 }  // namespace sinew

@@ -32,10 +32,10 @@ inline std::size_t near_column(std::size_t entry, std::size_t column) {
 }
 
 // push_c = cell_stiffness_c G_c . u for the cells of the range.
-void tangent_cells(const TangentRows& rows, const Float4* u, Range cells, float* push);
+void tangent_cells(const TangentRows& rows, const Float4* u, Range cells, float* pressure);
 
 // out_i = (K u)_i for the nodes of the range. Returns the sum of u_i . out_i.
-double tangent_nodes(const TangentRows& rows, const Float4* u, const float* push, Range nodes,
+double tangent_nodes(const TangentRows& rows, const Float4* u, const float* pressure, Range nodes,
                      Float4* out);
 
 }  // namespace sinew

@@ -17,7 +17,7 @@ constexpr Index most_groups = 200;
 
 // Share of the diagonal that is added, so that the coarse matrix of a body that nothing holds is
 // not singular.
-constexpr double touch = 1e-5;
+constexpr double regularisation = 1e-5;
 
 // The free nodes by body and by the region whose tets are stiffest at the node.
 std::map<std::pair<Index, int>, std::vector<Index>> nodes_by_region(const Model& model) {
@@ -134,7 +134,7 @@ void TwoLevel::factor(const TangentMatrix& rest) {
     CoarseBlock& b = block(g, g);
     const double mean = b.trace() / coarse_size;
     for (int p = 0; p < coarse_size; ++p) {
-      b(p, p) = b(p, p) > 0.0 ? b(p, p) + touch * mean : 1.0;
+      b(p, p) = b(p, p) > 0.0 ? b(p, p) + regularisation * mean : 1.0;
     }
   }
   factor_ = std::make_unique<BlockCholesky>(std::move(column));

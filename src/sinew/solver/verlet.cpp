@@ -26,10 +26,10 @@ constexpr double farthest = 1e9;
 
 // Moves the free nodes. Returns the first node that is not finite or has run away, or `none`.
 Index move_free_nodes(const Model& model, const std::vector<Vec3>& force, double h, State& state) {
-  const double kick = 0.5 * (state.last_step + h);
+  const double mean_step = 0.5 * (state.last_step + h);
   const int within = parallel_reduce(
       model.node_count(), 1,
-      [&](Range r) { return kick_and_drift(model, force, kick, h, farthest, r, state) ? 1 : 0; },
+      [&](Range r) { return leapfrog(model, force, mean_step, h, farthest, r, state) ? 1 : 0; },
       [](int a, int b) { return a & b; });
   if (within != 0) return none;
   for (Index i = 0; i < model.node_count(); ++i) {
@@ -42,7 +42,7 @@ Index move_free_nodes(const Model& model, const std::vector<Vec3>& force, double
 // Moves the pinned nodes along their paths; adds the work their motion does on the springs.
 void move_pins(const Model& model, const Controls& controls, const std::vector<Vec3>& force,
                double h, State& state) {
-  const double kick = 0.5 * (state.last_step + h);
+  const double mean_step = 0.5 * (state.last_step + h);
   for (std::size_t p = 0; p < model.pins.size(); ++p) {
     const Path& path = controls.pin_paths[p];
     if (path.keys.empty()) continue;
@@ -51,7 +51,7 @@ void move_pins(const Model& model, const Controls& controls, const std::vector<V
       const Vec3 target = path.at(state.time + h, model.rest_position[k]);
       const Vec3 velocity = (target - state.position[k]) / h;
       const Vec3 mean = 0.5 * (state.half_velocity[k] + velocity);
-      state.energy.work_in -= kick * force[k].dot(mean);
+      state.energy.work_in -= mean_step * force[k].dot(mean);
       state.half_velocity[k] = velocity;
       state.position[k] = target;
     }
@@ -60,17 +60,17 @@ void move_pins(const Model& model, const Controls& controls, const std::vector<V
 
 // Work of the loads in the step, with v(t) = (w before + w after) / 2; called before the move.
 void add_work_of_loads(const Model& model, const std::vector<Vec3>& force, double h, State& state) {
-  const double kick = 0.5 * (state.last_step + h);
+  const double mean_step = 0.5 * (state.last_step + h);
   for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& load) {
     const auto k = uz(node);
-    const Vec3 v = state.half_velocity[k] + (0.5 * kick * model.inverse_mass[k]) * force[k];
-    state.energy.work_in += kick * load.dot(v);
+    const Vec3 v = state.half_velocity[k] + (0.5 * mean_step * model.inverse_mass[k]) * force[k];
+    state.energy.work_in += mean_step * load.dot(v);
   });
 }
 
 // Work of the soft obstacles and tools that move over the step: their forces on the bodies times
-// their own way, with the velocity (c(t + h) - c(t - h_last)) / (h + h_last); called before the
-// move.
+// their own displacement, with the velocity (c(t + h) - c(t - h_last)) / (h + h_last); called
+// before the move.
 void add_work_of_obstacles(const Model& model, const Controls& controls, double h, State& state) {
   for_each_work_on_spheres(configuration(model, controls, state), state.time - state.last_step,
                            state.time + h,
@@ -82,12 +82,12 @@ void add_work_of_obstacles(const Model& model, const Controls& controls, double 
 // energy balance: it is 0 for a taut spring at rest.
 void follow_positions(const Model& model, const std::vector<Vec3>& force,
                       const std::vector<Vec3>& predicted, double h, State& state) {
-  const double kick = 0.5 * (state.last_step + h);
+  const double mean_step = 0.5 * (state.last_step + h);
   state.energy.dissipated -= parallel_sum(model.node_count(), [&](Index i) {
     const auto k = uz(i);
     if (model.inverse_mass[k] == 0.0) return 0.0;
     const Vec3 change = (state.position[k] - predicted[k]) / h;
-    const Vec3 before = state.half_velocity[k] - (kick * model.inverse_mass[k]) * force[k];
+    const Vec3 before = state.half_velocity[k] - (mean_step * model.inverse_mass[k]) * force[k];
     state.half_velocity[k] += change;
     return 0.5 * model.mass[k] * change.dot(before + state.half_velocity[k]);
   });
@@ -117,7 +117,7 @@ void enforce_volume(const Model& model, const std::vector<Vec3>& force, double h
                     VolumeLimit& limit, State& state, StepReport& report) {
   const std::vector<Vec3> predicted = state.position;
   const VolumeLimitReport volume = limit.enforce(model, state.position);
-  report.limits_met = report.limits_met && volume.met;
+  report.limits_met = report.limits_met && volume.within;
   if (volume.projections > 0) follow_positions(model, force, predicted, h, state);
 }
 
@@ -129,10 +129,10 @@ Index suspect_spring(const Model& model, const State& state, Index node) {
   double worst = -1.0;
   for (Index k = model.spring_start[uz(node)]; k < model.spring_start[uz(node) + 1]; ++k) {
     const Index s = model.node_spring[uz(k)] >> 1;
-    const double pull = force[uz(s)].norm();
-    if (!(pull <= worst)) {
+    const double size = force[uz(s)].norm();
+    if (!(size <= worst)) {
       suspect = s;
-      worst = pull;
+      worst = size;
     }
   }
   return suspect;
@@ -142,10 +142,10 @@ Index suspect_spring(const Model& model, const State& state, Index node) {
   std::string spring;
   const Index s = suspect_spring(model, state, node);
   if (s >= 0) {
-    spring = fmt::format("; its spring {} ({} to {}, k = {:.4g} N/m, l0 = {:.4g} m) pulled hardest",
-                         s, model.node_name(model.springs[uz(s)][0]),
-                         model.node_name(model.springs[uz(s)][1]), model.stiffness[uz(s)],
-                         model.rest_length[uz(s)]);
+    spring = fmt::format(
+        "; its spring {} ({} to {}, k = {:.4g} N/m, l0 = {:.4g} m) carries the largest force", s,
+        model.node_name(model.springs[uz(s)][0]), model.node_name(model.springs[uz(s)][1]),
+        model.stiffness[uz(s)], model.rest_length[uz(s)]);
   }
   throw Error(ErrorKind::diverged,
               fmt::format("the state {} at t = {:.6g} s (step {}): {}{}",

@@ -15,7 +15,7 @@ namespace {
 // the stable step hardly changes. If a body stiffens or is moved, it is reset to the first.
 constexpr std::int64_t first_watch = 6;
 constexpr std::int64_t last_watch = 48;
-constexpr double calm = 0.97;  // hardly changed: this share of the last stable step, or more
+constexpr double steady = 0.97;  // hardly changed: this share of the last stable step, or more
 
 // Whether the path moves at any time between `from` and `to`.
 bool path_moves(const Path& path, double from, double to) {
@@ -74,10 +74,11 @@ class VerletSteps : public Stepper {
     const double before = memory.stable_step;
     memory.stable_step =
         watch_stable_step(model_, controls, state.position, h, memory.stiff_mode, forces());
-    const bool stirred =
-        memory.stable_step < calm * before ||
+    const bool changing =
+        memory.stable_step < steady * before ||
         anything_is_moved(controls, state.time, state.time + static_cast<double>(last_watch) * h);
-    memory.watch_interval = stirred ? first_watch : std::min(2 * memory.watch_interval, last_watch);
+    memory.watch_interval =
+        changing ? first_watch : std::min(2 * memory.watch_interval, last_watch);
     memory.steps_to_watch = memory.watch_interval;
     return memory.stable_step;
   }

@@ -36,13 +36,13 @@ struct Box {
     double in = -1.0;
     double out = 1.0;
     for (int a = 0; a < 3; ++a) {
-      const double way = q1[a] - q0[a];
-      if (way == 0.0) {
+      const double displacement = q1[a] - q0[a];
+      if (displacement == 0.0) {
         if (std::abs(q0[a]) > half[a]) return {};
         continue;
       }
-      const double s = (-half[a] - q0[a]) / way;
-      const double t = (half[a] - q0[a]) / way;
+      const double s = (-half[a] - q0[a]) / displacement;
+      const double t = (half[a] - q0[a]) / displacement;
       in = std::max(in, std::min(s, t));
       out = std::min(out, std::max(s, t));
     }

@@ -48,12 +48,12 @@ struct Cylinder {
       in = c / (-b + std::sqrt(root));  // without cancellation
     }
     if (a > 0.0) out = std::min(out, (-b + std::sqrt(root)) / a);
-    const double way = q1.z() - q0.z();
-    if (way == 0.0) {
+    const double displacement = q1.z() - q0.z();
+    if (displacement == 0.0) {
       if (std::abs(q0.z()) > half) return {};
     } else {
-      const double s = (-half - q0.z()) / way;
-      const double t = (half - q0.z()) / way;
+      const double s = (-half - q0.z()) / displacement;
+      const double t = (half - q0.z()) / displacement;
       in = std::max(in, std::min(s, t));
       out = std::min(out, std::max(s, t));
     }

@@ -23,9 +23,9 @@ inline SurfacePoint ball_surface(const Vec3& q, const Vec3& middle, double radiu
 inline std::optional<double> enters_round(const Vec3& q0, const Vec3& q1, const Vec3& middle,
                                           double radius, const Vec3& mask = Vec3::Ones()) {
   const Vec3 r = (q0 - middle).cwiseProduct(mask);
-  const Vec3 way = (q1 - q0).cwiseProduct(mask);
-  const double a = way.squaredNorm();
-  const double b = r.dot(way);
+  const Vec3 displacement = (q1 - q0).cwiseProduct(mask);
+  const double a = displacement.squaredNorm();
+  const double b = r.dot(displacement);
   const double c = r.squaredNorm() - radius * radius;
   const double root = b * b - a * c;
   if (b >= 0.0 || c <= 0.0 || root < 0.0) return {};

@@ -1,6 +1,5 @@
-#include "sinew/solver/mean_edge.h"
+#include "sinew/model/mean_edge.h"
 
-#include <cmath>
 #include <numeric>
 #include <vector>
 
@@ -10,7 +9,7 @@ double mean_edge(const Model& model) {
   const auto mean = [](const std::vector<double>& values) {
     return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   };
-  if (!model.tets.empty()) return std::cbrt(6.0 * std::sqrt(2.0) * mean(model.rest_volume));
+  if (!model.tets.empty()) return regular_tet_edge(mean(model.rest_volume));
   return model.springs.empty() ? 0.0 : mean(model.rest_length);
 }
 

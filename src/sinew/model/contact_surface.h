@@ -1,5 +1,5 @@
-// The surfaces that may touch: those of the bodies and of rigid meshes, in one list.
-// contact/touch_surface.h builds it once; contact/surfaces.h finds contacts on it.
+// The contact surface: the surfaces of the bodies and of rigid meshes, in one list.
+// contact/contact_surface.h builds it once; contact/surfaces.h finds contacts on it.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace sinew {
 
 // Nodes and triangles are stored owner by owner. An owner is a body (its index) or, from
 // bodies.size() on, a rigid mesh. Lengths are those of the rest shape.
-struct TouchSurface {
+struct ContactSurface {
   std::vector<Index> nodes;           // node ids, ascending (nodes)
   std::vector<double> node_size;      // mean size of the triangles around it [m] (nodes)
   std::vector<Index> ring_start;      // offsets into ring (nodes + 1)

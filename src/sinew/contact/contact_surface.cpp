@@ -1,4 +1,4 @@
-#include "sinew/contact/touch_surface.h"
+#include "sinew/contact/contact_surface.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 namespace sinew {
 namespace {
 
-double mean_edge(const std::vector<Vec3>& x, const Triangle& t) {
+double mean_side(const std::vector<Vec3>& x, const Triangle& t) {
   const Vec3 &a = x[uz(t[0])], &b = x[uz(t[1])], &c = x[uz(t[2])];
   return ((b - a).norm() + (c - b).norm() + (a - c).norm()) / 3.0;
 }
@@ -37,7 +37,7 @@ struct Side {
   int corner;  // the one opposite to the edge
 };
 
-void add_edges(const std::vector<Vec3>& x, Range triangles, TouchSurface& s) {
+void add_edges(const std::vector<Vec3>& x, Range triangles, ContactSurface& s) {
   std::vector<Side> sides;
   for (Index t = triangles.begin; t < triangles.end; ++t) {
     for (int c = 0; c < 3; ++c) {
@@ -83,11 +83,11 @@ std::vector<Index> nodes_of(std::span<const Triangle> triangles) {
 
 // Appends an owner. heights: of the tets behind the triangles; empty for a rigid mesh.
 void add_owner(const std::vector<Vec3>& x, std::span<const Triangle> triangles,
-               std::span<const double> heights, TouchSurface& s) {
+               std::span<const double> heights, ContactSurface& s) {
   const Range range = {static_cast<Index>(s.triangles.size()),
                        static_cast<Index>(s.triangles.size() + triangles.size())};
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const double edge = mean_edge(x, triangles[t]);
+    const double edge = mean_side(x, triangles[t]);
     s.triangles.push_back(triangles[t]);
     s.triangle_size.push_back(heights.empty() ? edge : std::min(edge, heights[t]));
   }
@@ -124,11 +124,11 @@ void add_owner(const std::vector<Vec3>& x, std::span<const Triangle> triangles,
 
 }  // namespace
 
-void build_touch_surface(Model& model) {
+void build_contact_surface(Model& model) {
   model.surface = {};
   const bool rigid = std::any_of(model.obstacles.begin(), model.obstacles.end(),
                                  [](const Obstacle& o) { return o.mesh() != nullptr; });
-  if (!model.touch && !rigid) return;
+  if (!model.body_contact && !rigid) return;
   model.surface.body_count = static_cast<Index>(model.bodies.size());
   const Surface all = build_surface(model.tets, model.node_count());
   for (const Body& body : model.bodies) {
@@ -144,11 +144,11 @@ void build_touch_surface(Model& model) {
     add_owner(model.rest_position, triangles, heights, model.surface);
   }
   for (const Obstacle& o : model.obstacles) {
-    if (o.mesh() != nullptr) add_rigid_touch_surface(model, o.mesh()->triangles);
+    if (o.mesh() != nullptr) add_rigid_contact_surface(model, o.mesh()->triangles);
   }
 }
 
-void add_rigid_touch_surface(Model& model, std::span<const Triangle> triangles) {
+void add_rigid_contact_surface(Model& model, std::span<const Triangle> triangles) {
   add_owner(model.rest_position, triangles, {}, model.surface);
 }
 

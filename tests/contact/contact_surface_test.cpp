@@ -1,18 +1,18 @@
-#include "sinew/contact/touch_surface.h"
+#include "sinew/contact/contact_surface.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "tests/contact/touch_models.h"
+#include "tests/contact/contact_models.h"
 
 namespace sinew {
 namespace {
 
-TEST(TouchSurface, OfTwoCubes) {
+TEST(ContactSurface, OfTwoCubes) {
   const TetMesh cube = box(Vec3(0.1, 0.1, 0.1), {2, 2, 2});
   const Model model = testing::surface_pair_model({cube, testing::moved(cube, Vec3(1, 0, 0))});
-  const TouchSurface& s = model.surface;
+  const ContactSurface& s = model.surface;
   EXPECT_EQ(s.body_count, 2);
   EXPECT_EQ(s.owner_count(), 2);
   EXPECT_EQ(s.triangles.size(), 96u);
@@ -37,17 +37,17 @@ TEST(TouchSurface, OfTwoCubes) {
   }
 }
 
-TEST(TouchSurface, NoneWhereNothingTouches) {
+TEST(ContactSurface, NoneWhereNothingTouches) {
   Model model = testing::surface_pair_model({box(Vec3(0.1, 0.1, 0.1), {2, 2, 2})});
-  model.touch.reset();
-  build_touch_surface(model);
+  model.body_contact.reset();
+  build_contact_surface(model);
   EXPECT_TRUE(model.surface.empty());
   const std::vector<Vec3>& x = model.rest_position;
   EXPECT_TRUE(testing::contacts_of(model, x, x, 1.0).empty());
 }
 
 // A rigid mesh: nodes that belong to no body, after those of the bodies.
-TEST(TouchSurface, RigidMeshesTouchBodiesAndNotEachOther) {
+TEST(ContactSurface, RigidMeshesTouchBodiesAndNotEachOther) {
   const TetMesh cube = box(Vec3(0.1, 0.1, 0.1), {4, 4, 4});
   Model model = testing::surface_pair_model({cube});
   for (int k = 0; k < 2; ++k) {
@@ -60,7 +60,7 @@ TEST(TouchSurface, RigidMeshesTouchBodiesAndNotEachOther) {
     }
     const std::vector<Triangle> triangles = {{first, first + 1, first + 2},
                                              {first, first + 2, first + 3}};
-    add_rigid_touch_surface(model, triangles);
+    add_rigid_contact_surface(model, triangles);
   }
   const std::vector<Contact> found =
       testing::contacts_of(model, model.rest_position, model.rest_position, 0.0001);

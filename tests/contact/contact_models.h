@@ -1,4 +1,4 @@
-// Models made of shapes, for the tests of what touches.
+// Models made of shapes, for the tests of contact.
 #pragma once
 
 #include <random>
@@ -21,7 +21,7 @@ inline TetMesh moved(const TetMesh& mesh, const Vec3& shift) {
 }
 
 inline Model surface_pair_model(const std::vector<TetMesh>& meshes,
-                                const Touch& touch = {true, true}) {
+                                const BodyContact& contact = {true, true}) {
   Model model;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     BodySpec spec;
@@ -31,9 +31,9 @@ inline Model surface_pair_model(const std::vector<TetMesh>& meshes,
     spec.regions = {"rest"};
     add_body(model, spec);
   }
-  model.touch = touch;
+  model.body_contact = contact;
   finish(model);
-  build_touch_surface(model);
+  build_contact_surface(model);
   return model;
 }
 
