@@ -48,6 +48,13 @@ std::string force_curve(const std::string& probes_csv, const std::string& obstac
   return to_svg(plot);
 }
 
+std::vector<std::string> force_curve_names(const Model& model) {
+  std::vector<std::string> names;
+  for (const Obstacle& o : model.obstacles)
+    if (!o.path.keys.empty()) names.push_back(o.name + "-force.svg");
+  return names;
+}
+
 void write_force_curves(const std::filesystem::path& folder, const Model& model) {
   std::string table;
   for (const Obstacle& o : model.obstacles) {
