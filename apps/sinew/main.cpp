@@ -40,9 +40,11 @@ int finish_output(int status, int before) {
   std::cout.flush();
   const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout;
   if (!lost) return status;
-  const int reason = before != 0 ? before : errno != 0 ? errno : EIO;
-  const int code = say("standard output cannot be written", std::generic_category().message(reason),
-                       "make room where it goes, or write to another place", io_failed);
+  const int reason = before != 0 ? before : errno;  // 0: an earlier write failed
+  const int code =
+      say("standard output cannot be written",
+          reason != 0 ? std::generic_category().message(reason) : "its end takes no more",
+          "make room where it goes, or write to another place", io_failed);
   return status == 0 ? code : status;
 }
 
