@@ -5,7 +5,7 @@
 #include "sinew/base/error.h"
 #include "sinew/io/file_io.h"
 #include "sinew/scene/build.h"
-#include "support/folder.h"
+#include "tests/support/folder.h"
 
 namespace sinew {
 namespace {

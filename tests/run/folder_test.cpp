@@ -4,8 +4,8 @@
 
 #include "sinew/base/error.h"
 #include "sinew/io/file_io.h"
-#include "support/errors.h"
-#include "support/folder.h"
+#include "tests/support/errors.h"
+#include "tests/support/folder.h"
 
 namespace sinew {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "support/errors.h"
+#include "tests/support/errors.h"
 
 namespace sinew {
 namespace {
