@@ -24,7 +24,7 @@ TEST(Cost, OnlyRunsOfMoreThanADayAreAnnounced) {
 }
 
 TEST(Cost, AStiffBodyIsTheReason) {
-  const auto said = warning({"box.young=1e22"});
+  const auto said = warning({"box.young=1e26"});
   ASSERT_TRUE(said);
   EXPECT_NE(said->find("stiffest spring"), std::string::npos) << *said;
 }
