@@ -258,7 +258,8 @@ class InterruptTest(CliTest):
     def test_building_and_solving_end_at_once(self):
         big = ["--set", "beam.cells=[60,60,60]", "--no-output"]
         for args, after in ((["run", BEAM, *big], 0.5),
-                            (["run", BEAM, *big, "--set", 'stepper="static"'], 0.5)):
+                            (["run", BEAM, *big, "--set", 'stepper="static"'], 0.5),
+                            (["view", BEAM, "--port", "0", *big[:2]], 0.5)):
             with self.subTest(args=args):
                 # 0.2 s on an idle machine; tests share theirs.
                 self.assertLess(self.interrupted(args, after), 2.0)
