@@ -1,9 +1,15 @@
 // The command line: parses arguments, calls the library, converts errors into text and exit codes.
 #include <CLI/CLI.hpp>
+#include <cerrno>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <system_error>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "sinew/base/error.h"
 
 namespace {
@@ -21,9 +27,28 @@ Examples:
   sinew convert liver.mesh liver.vtu
   sinew materials liver)";
 
-}  // namespace
+constexpr int io_failed = static_cast<int>(sinew::ErrorKind::io);
 
-int main(int argc, char** argv) {
+int say(const char* what, const std::string& why, const char* remedy, int code) {
+  std::fprintf(stderr, "sinew: %s: %s\n  remedy: %s\n", what, why.c_str(), remedy);
+  return code;
+}
+
+// What was printed has to arrive, or the exit code says so. `before`: errno of a failure before.
+int finish_output(int status, int before) {
+  errno = 0;
+  std::cout.flush();
+  const bool lost = std::fflush(stdout) != 0 || std::ferror(stdout) != 0 || !std::cout;
+  if (!lost) return status;
+  const int reason = before != 0 ? before : errno;  // 0: an earlier write failed
+  const int code =
+      say("standard output cannot be written",
+          reason != 0 ? std::generic_category().message(reason) : "its end takes no more",
+          "make room where it goes, or write to another place", io_failed);
+  return status == 0 ? code : status;
+}
+
+int run(int argc, char** argv, int& output_failure) {
   CLI::App app{"Sinew simulates soft tissue as a mass-spring system on tetrahedral meshes.",
                "sinew"};
   app.set_version_flag("--version", "sinew " SINEW_VERSION);
@@ -52,10 +77,28 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     std::fprintf(stderr, "sinew: out of memory\n  remedy: a coarser mesh\n");
     return static_cast<int>(sinew::ErrorKind::io);
+  } catch (const std::filesystem::filesystem_error& e) {
+    return say(e.path1().c_str(), e.code().message(),
+               "check the path: its length, loops of links, permissions", io_failed);
+  } catch (const std::system_error& e) {  // fmt throws it if a stream takes no more
+    if (std::ferror(stdout) != 0) {
+      output_failure = e.code().value();
+      return io_failed;
+    }
+    return say("the system refused", e.what(), "free some memory, disk or processes", io_failed);
   } catch (const std::exception& e) {
     std::fprintf(stderr, "sinew: internal error: %s\n  remedy: please report it with the scene\n",
                  e.what());
     return static_cast<int>(sinew::ErrorKind::internal);
   }
   return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  end_on_signals();
+  int output_failure = 0;
+  const int status = run(argc, argv, output_failure);
+  return finish_output(status, output_failure);
 }

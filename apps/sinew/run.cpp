@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
 #include <cstdio>
 #include <filesystem>
 
@@ -39,8 +40,10 @@ void add_common(CLI::App& command, RunArguments& a) {
 
 // out/NAME, or out/NAME-2 ... if that exists: a run overwrites another only on request.
 fs::path fresh_folder(const std::string& name) {
+  std::error_code failed;
   fs::path folder = fs::path("out") / name;
-  for (int n = 2; fs::exists(folder); ++n) folder = fs::path("out") / fmt::format("{}-{}", name, n);
+  for (int n = 2; fs::exists(folder, failed); ++n)
+    folder = fs::path("out") / fmt::format("{}-{}", name, n);
   return folder;
 }
 
@@ -67,7 +70,17 @@ int supervise(const RunArguments& a, const std::string& title, fs::path out, con
   RunOptions options;
   options.out = std::move(out);
   options.force = a.force;
-  options.stop = &stop_on_signals();
+  options.stop = &stop_flag();
+  options.on_start = [] { stop_on_signals(); };
+  std::atomic<bool> stepping{false};
+  options.stepping = &stepping;
+  const Impatience impatience(stepping, [&a, folder = options.out] {
+    if (a.quiet) return;
+    fmt::print(stderr, "\nInterrupted within a step.{}\n",
+               folder.empty()
+                   ? ""
+                   : " To go on from the last checkpoint: sinew resume " + folder.string());
+  });
   options.on_progress = [&](const Progress& p) { bar.update(p); };
   options.on_stepper = [&](StepperKind stepper, const std::string& reason) {
     if (!a.quiet && !a.json)
@@ -101,7 +114,8 @@ void add_run(CLI::App& app, int& status) {
   command->add_option("--set", a->set, "Override a value: --set dt=1e-4 --set beam.young=1.5e6")
       ->allow_extra_args(false)
       ->type_name("KEY=VALUE");
-  command->add_flag("--force", a->force, "Replace a run that --out already holds");
+  command->add_flag("--force", a->force,
+                    "Replace a run that --out already holds; files that Sinew did not write stay");
   command->add_flag("--no-output", a->no_output, "Write no folder, only report");
   add_common(*command, *a);
   add_framework_options(*command, a->framework);

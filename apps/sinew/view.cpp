@@ -7,12 +7,14 @@
 #include <atomic>
 #include <csignal>
 #include <cstdio>
+#include <ctime>
 #include <filesystem>
 #include <memory>
 #include <thread>
 
 #include "commands.h"
 #include "framework_options.h"
+#include "interrupt.h"
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/scene/around.h"
@@ -56,28 +58,30 @@ sigset_t end_signals() {
   return signals;
 }
 
-// Waits for Ctrl-C or SIGTERM on a separate thread, and stops the server. Signals must be blocked
-// before any other thread starts. A second Ctrl-C kills.
+// Waits for Ctrl-C or SIGTERM on a separate thread. Before there is a server the program ends at
+// once; afterwards the server is stopped, and a step that goes on for long is not waited for:
+// nothing is to be saved. Signals must be blocked before any other thread starts.
 class StopOnSignal {
  public:
-  explicit StopOnSignal(server::Server& server)
-      : thread_([this, &server](const std::stop_token& token) {
+  StopOnSignal()
+      : thread_([this](const std::stop_token& token) {
           const sigset_t signals = end_signals();
-          const timespec a_moment{0, 100'000'000};
+          const timespec a_moment{0, 20'000'000};
           while (!token.stop_requested()) {
             if (sigtimedwait(&signals, nullptr, &a_moment) < 0) continue;
-            stopped_ = true;
-            server.stop();
-            std::signal(SIGINT, SIG_DFL);
-            std::signal(SIGTERM, SIG_DFL);
-            pthread_sigmask(SIG_UNBLOCK, &signals, nullptr);
-            return;
+            server::Server* const server = server_.load();
+            if (server == nullptr) _exit(interrupted);
+            server->stop();
+            constexpr int moments = 7;  // time to say goodbye to the browsers
+            for (int i = 0; i < moments && !token.stop_requested(); ++i)
+              nanosleep(&a_moment, nullptr);
+            if (!token.stop_requested()) _exit(0);
           }
         }) {}
-  bool stopped() const { return stopped_; }
+  void stops(server::Server& server) { server_.store(&server); }
 
  private:
-  std::atomic<bool> stopped_{false};
+  std::atomic<server::Server*> server_{nullptr};
   std::jthread thread_;
 };
 
@@ -133,6 +137,7 @@ std::string first_scene(const std::filesystem::path& scenes) {
 int view(const ViewArguments& a) {
   const sigset_t signals = end_signals();
   pthread_sigmask(SIG_BLOCK, &signals, nullptr);
+  StopOnSignal stop;
   const ThreadLimit limit(a.threads);
   server::Options options;
   options.host = a.host;
@@ -144,7 +149,7 @@ int view(const ViewArguments& a) {
   const Scene loaded = load_scene_or_mesh(scene, a.set, a.framework);
   for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
   server::Server server(options, loaded);
-  const StopOnSignal stop(server);
+  stop.stops(server);
   fmt::print("{}\n", server.url());
   if (!a.quiet) fmt::print("Open it in a browser. Ctrl-C ends.\n");
   std::fflush(stdout);

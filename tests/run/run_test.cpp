@@ -12,8 +12,8 @@
 
 #include "sinew/io/file_io.h"
 #include "sinew/io/vtu.h"
+#include "sinew/run/checkpoint_file.h"
 #include "sinew/scene/build.h"
-#include "sinew/sim/checkpoint.h"
 
 namespace sinew {
 namespace {
@@ -234,7 +234,8 @@ TEST_F(Run, AnUnstableRunThatIsAllowedStopsAndKeepsItsLastGoodCheckpoint) {
   EXPECT_NE(result.error->message().find("body box, node "), std::string::npos);
   const Scene scene = load_scene(folder_ / "scene.toml");
   const Model model = build_model(scene);
-  const RunState kept = read_checkpoint(folder_ / "checkpoint.bin", model);
+  const fs::path file = folder_ / "checkpoint.bin";
+  const RunState kept = state_of(read_run_checkpoint(file), file, model);
   for (const Vec3& x : kept.state.position) EXPECT_TRUE(x.allFinite());
   const auto summary = nlohmann::json::parse(io::read_file(folder_ / "summary.json"));
   EXPECT_EQ(summary["status"], "diverged");
@@ -260,26 +261,6 @@ path = [{ time = 1, move = [1.0, 0, 0] }]
   EXPECT_EQ(result.status, RunStatus::finished);
   EXPECT_GT(result.summary.step_reductions, 0);
   EXPECT_LT(result.summary.max_stretch, 40.0);
-}
-
-TEST_F(Run, CheckpointsOfOtherModelsAndDamagedOnesAreRefused) {
-  run_scene(hanging_scene(hanging_box), into_folder());
-  const fs::path file = folder_ / "checkpoint.bin";
-  const Model model = build_model(hanging_scene(hanging_box));
-  EXPECT_NO_THROW(read_checkpoint(file, model));
-  EXPECT_THROW(read_checkpoint(file, build_model(hanging_scene(hanging_box, {"box.young=3e4"}))),
-               Error);
-  const std::string whole = io::read_file(file);
-  for (std::size_t cut = 0; cut < whole.size(); cut += 97) {
-    if (cut > 0) {
-      io::write_file(file, whole.substr(0, cut));
-      EXPECT_THROW(read_checkpoint(file, model), Error) << cut;
-    }
-    std::string flipped = whole;
-    flipped[cut] = static_cast<char>(flipped[cut] ^ 0x40);
-    io::write_file(file, flipped);
-    EXPECT_THROW(read_checkpoint(file, model), Error) << cut;
-  }
 }
 
 TEST_F(Run, NothingToResumeIsAnError) {

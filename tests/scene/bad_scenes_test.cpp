@@ -108,10 +108,10 @@ const std::vector<Bad>& bad_scenes() {
        "scene.toml:3:10: 'cells' in [body.beam] holds 0; expected from 1 to 20000000\n"
        "  remedy: the default is cells = [4, 4, 16]"},
       {"safety = 1.1\n" BEAM,
-       "scene.toml:1:10: 'safety' in the scene is 1.1; expected in (0, 1]\n"
+       "scene.toml:1:10: 'safety' in the scene is 1.1; expected from 0.001 to 1\n"
        "  remedy: the default is safety = 0.9"},
       {"dt = -1\n" BEAM,
-       "scene.toml:1:6: 'dt' in the scene is -1; expected > 0 [s]\n"
+       "scene.toml:1:6: 'dt' in the scene is -1; expected in (0, 1000000] [s]\n"
        "  remedy: the default is dt = \"auto\""},
       {"dt = \"automatic\"\n" BEAM,
        "scene.toml:1:6: 'dt' in the scene is \"automatic\"; expected a number or \"auto\" [s]; did "

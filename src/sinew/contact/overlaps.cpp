@@ -39,6 +39,32 @@ double distance_to_surface(const Vec3& p, const std::vector<Vec3>& x, const Cont
   return std::sqrt(least2);
 }
 
+// Bodies that coincide have all their surface nodes on each other's surface: the middles of the
+// tets of a, or of a sample of them, show how deep they are.
+void look_inside(const Model& model, const std::vector<Vec3>& x, const BoxTree& tree,
+                 Overlap& overlap) {
+  constexpr Index most = 500;
+  const ContactSurface& s = model.surface;
+  const Body &a = model.bodies[uz(overlap.a)], &b = model.bodies[uz(overlap.b)];
+  std::vector<Index> near;
+  for (Index t = a.tets.begin; t < a.tets.end; t += 1 + a.tets.size() / most) {
+    const Tet& tet = model.tets[uz(t)];
+    const Vec3 middle = 0.25 * (x[uz(tet[0])] + x[uz(tet[1])] + x[uz(tet[2])] + x[uz(tet[3])]);
+    Box at;
+    at.add(middle);
+    near.clear();
+    tree.find(at, near);
+    const bool in = std::any_of(near.begin(), near.end(), [&](Index k) {
+      return inside(middle, x, model.tets[uz(b.tets.begin + k)]);
+    });
+    if (!in) continue;
+    const double depth = distance_to_surface(middle, x, s, s.owner_triangles[uz(overlap.b)]);
+    if (depth <= overlap.depth) continue;
+    overlap.depth = depth;
+    overlap.deepest = tet[0];
+  }
+}
+
 }  // namespace
 
 std::vector<Overlap> find_overlaps(const Model& model, const std::vector<Vec3>& x,
@@ -83,6 +109,9 @@ std::vector<Overlap> find_overlaps(const Model& model, const std::vector<Vec3>& 
           overlap.deepest = node;
         }
       }
+      const double size = (bounds[uz(b)].hi - bounds[uz(b)].lo).norm();
+      if (overlap.nodes > 0 && overlap.depth < 1e-6 * size)
+        look_inside(model, x, trees[uz(b)], overlap);
       if (overlap.nodes > 0) overlaps.push_back(overlap);
     }
   }

@@ -48,6 +48,14 @@ std::string force_curve(const std::string& probes_csv, const std::string& obstac
   return to_svg(plot);
 }
 
+std::vector<std::string> force_curve_names(const Model& model, const Controls& controls) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < model.obstacles.size(); ++i)
+    if (!controls.obstacle_paths[i].keys.empty())
+      names.push_back(model.obstacles[i].name + "-force.svg");
+  return names;
+}
+
 void write_force_curves(const std::filesystem::path& folder, const Model& model,
                         const Controls& controls) {
   std::string table;

@@ -15,6 +15,7 @@
 #include "sinew/io/file_io.h"
 #include "sinew/io/pvd.h"
 #include "sinew/io/vtu.h"
+#include "sinew/run/folder.h"
 #include "sinew/sim/obstacle_reading.h"
 #include "sinew/sim/readings.h"
 
@@ -58,7 +59,13 @@ std::ofstream open_table(const fs::path& file, std::string_view header, std::siz
     std::istringstream old(io::read_file(file));
     std::string line;
     std::getline(old, line);
-    for (std::size_t i = 0; i < rows && std::getline(old, line); ++i) kept += line + "\n";
+    std::size_t found = 0;
+    for (; found < rows && std::getline(old, line); ++found) kept += line + "\n";
+    if (found < rows)
+      throw Error(
+          ErrorKind::input,
+          fmt::format("the table has {} rows, and the checkpoint counts on {}", found, rows),
+          "put the file back as Sinew wrote it, or start the run again", Location{file.string()});
   }
   io::write_file(file, kept);
   std::ofstream table(file, std::ios::app);
@@ -106,15 +113,22 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
   probes_ = open_table(folder_ / "probes.csv", probe_header(model), rows);
   energy_ = open_table(folder_ / "energy.csv", energy_header, rows);
   frames_ = open_table(folder_ / "frames.csv", frames_header, rows);
+  std::error_code ignored;
+  for (std::size_t f = 0; vtu_ && f < rows; ++f) {  // some are missing if vtu was off for a time
+    if (fs::exists(folder_ / frame_file(scene_, f), ignored))
+      entries_.push_back({run.frame_times[f], frame_file(scene_, f)});
+  }
 }
 
 void Recorder::record(const Controls& controls, const RunState& run, const std::vector<Vec3>& force,
                       ContactFinder* finder) {
   const Energies e = measure_energies(model_, controls, run.state, force);
   if (vtu_) {
-    io::write_file(folder_ / frame_file(scene_, run.frame_times.size() - 1),
-                   format_frame(model_, run, force, encoding_, cells_));
-    write_collection(run);
+    const std::string file = frame_file(scene_, run.frame_times.size() - 1);
+    io::write_file(folder_ / file, format_frame(model_, run, force, encoding_, cells_));
+    not_synced_.push_back(folder_ / file);
+    entries_.push_back({run.frame_times.back(), file});
+    io::write_pvd(folder_ / (scene_ + ".pvd"), entries_);
   }
 
   const std::vector<Vec3>& x = run.state.position;
@@ -138,8 +152,8 @@ void Recorder::record(const Controls& controls, const RunState& run, const std::
                       volume_ratio(model_, x), range.stretch, range.compress, run.contacts));
   const FrameWork& w = run.work;
   add_row(frames_, folder_ / "frames.csv",
-          fmt::format("{},{},{:.4f},{},{},{},{:.4g},{}", run.frame, run.state.time, 1e3 * w.seconds,
-                      w.steps, w.newton_steps, w.products, w.residual,
+          fmt::format("{},{},{:.4f},{},{},{},{:.4g},{}", run.frame_times.size() - 1, run.state.time,
+                      1e3 * w.seconds, w.steps, w.newton_steps, w.products, w.residual,
                       w.steps_cut_short > 0 ? "yes" : "no"));
 }
 
@@ -183,12 +197,12 @@ std::string format_frame(const Model& model, const RunState& run, const std::vec
   return io::format_vtu(data, options);
 }
 
-void Recorder::write_collection(const RunState& run) const {
-  std::vector<io::PvdEntry> entries;
-  for (std::size_t f = 0; f < run.frame_times.size(); ++f) {
-    entries.push_back({run.frame_times[f], frame_file(scene_, f)});
-  }
-  io::write_pvd(folder_ / (scene_ + ".pvd"), entries);
+void Recorder::sync() {
+  for (const char* table : {"probes.csv", "energy.csv", "frames.csv"})
+    sync_to_disk(folder_ / table);
+  for (const fs::path& frame : not_synced_) sync_to_disk(frame);
+  if (!not_synced_.empty()) sync_to_disk(folder_ / "frames");
+  not_synced_.clear();
 }
 
 }  // namespace sinew

@@ -5,8 +5,10 @@
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "sinew/contact/contact_finder.h"
+#include "sinew/io/pvd.h"
 #include "sinew/io/vtu.h"
 #include "sinew/model/controls.h"
 #include "sinew/scene/scene.h"
@@ -17,7 +19,7 @@ namespace sinew {
 class Recorder {
  public:
   // `folder` must exist. A resumed run (run.frame_times not empty) keeps the rows of the frames in
-  // its checkpoint and drops later ones.
+  // its checkpoint and drops later ones; Error(input) if some of them are missing.
   Recorder(const Scene& scene, const Model& model, std::filesystem::path folder,
            const RunState& run);
 
@@ -26,15 +28,18 @@ class Recorder {
   void record(const Controls& controls, const RunState& run, const std::vector<Vec3>& force,
               ContactFinder* finder);
 
- private:
-  void write_collection(const RunState& run) const;
+  // Waits until everything written so far is on the disk. Throws Error(io).
+  void sync();
 
+ private:
   const Model& model_;
   std::string scene_;  // its name, which is part of the file names
   std::filesystem::path folder_;
   bool vtu_;
   io::VtuEncoding encoding_;
-  std::string cells_;  // encoded once, because all frames have the same
+  std::string cells_;                              // encoded once, because all frames have the same
+  std::vector<io::PvdEntry> entries_;              // of the collection
+  std::vector<std::filesystem::path> not_synced_;  // frames
   std::ofstream probes_;
   std::ofstream energy_;
   std::ofstream frames_;

@@ -11,9 +11,12 @@
 #include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/terms.h"
 #include "sinew/io/file_io.h"
+#include "sinew/run/checkpoint_file.h"
+#include "sinew/run/cost.h"
+#include "sinew/run/folder.h"
 #include "sinew/run/force_curve.h"
 #include "sinew/run/recorder.h"
-#include "sinew/sim/checkpoint.h"
+#include "sinew/run/scene_changes.h"
 #include "sinew/sim/internals.h"
 
 namespace sinew {
@@ -24,39 +27,32 @@ constexpr const char* checkpoint_name = "checkpoint.bin";
 constexpr const char* scene_name = "scene.toml";
 constexpr const char* summary_name = "summary.json";
 
-// Creates the output folder, and removes the files of an earlier run.
-void prepare_folder(const Scene& scene, const RunOptions& options) {
-  if (options.out.empty()) return;
-  const bool has_run =
-      fs::exists(options.out / checkpoint_name) || fs::exists(options.out / summary_name);
-  if (has_run && !options.force) {
-    throw Error(ErrorKind::usage, "the folder already holds a run",
-                "choose another --out, or --force to replace it, or 'sinew resume' to go on",
-                Location{options.out.string()});
-  }
-  std::error_code failed;
-  if (has_run) {
-    for (const char* name :
-         {checkpoint_name, summary_name, scene_name, "probes.csv", "energy.csv", "frames.csv"}) {
-      fs::remove(options.out / name, failed);
-    }
-    fs::remove_all(options.out / "frames", failed);
-  }
-  fs::create_directories(options.out / "frames", failed);
-  if (failed) {
-    throw Error(ErrorKind::io, "cannot make the folder: " + failed.message(),
-                "choose an --out where you may write", Location{options.out.string()});
-  }
-  io::write_file(options.out / scene_name, document_with_base(scene));
+RunFiles files_of(const Scene& scene, const Model& model, const Controls& controls) {
+  RunFiles files{scene.name,
+                 {scene_name, checkpoint_name, summary_name, "probes.csv", "energy.csv",
+                  "frames.csv", scene.name + ".pvd"}};
+  for (const std::string& name : force_curve_names(model, controls)) files.names.push_back(name);
+  return files;
+}
+
+// The files that a scene is read from.
+std::vector<fs::path> inputs_of(const Scene& scene) {
+  std::vector<fs::path> inputs = {scene.file};
+  for (const SceneBody& body : scene.bodies)
+    if (!body.mesh.empty()) inputs.push_back(fs::path(scene.base) / body.mesh);
+  for (const SceneObstacle& o : scene.obstacles)
+    if (!o.mesh.empty()) inputs.push_back(fs::path(scene.base) / o.mesh);
+  return inputs;
 }
 
 // Runs a World from its current state to its end, and writes the results into a folder.
 class Runner {
  public:
-  Runner(sim::World& world, const RunOptions& options, Clock::time_point start)
+  Runner(sim::World& world, const RunOptions& options, bool edited, Clock::time_point start)
       : world_(world),
         run_(world.run()),
         options_(options),
+        edited_(edited),
         start_(start),
         wall_before_(run_.wall_seconds),
         resumed_(!run_.frame_times.empty()) {}
@@ -65,11 +61,19 @@ class Runner {
     const double sim_before = run_.state.time;
     const double checkpoint = world_.scene().output.checkpoint;
     const std::int64_t frames = world_.stepping().frame_count();
+    if (edited_) plan_anew(frames);
+    if (options_.on_start) options_.on_start();
+    warn_before();
     if (options_.on_stepper && !run_.stepper_reason.empty()) {
       options_.on_stepper(run_.stepper, run_.stepper_reason);
     }
     if (!options_.out.empty()) {
-      if (!resumed_) prepare_folder(world_.scene(), options_);
+      if (!resumed_) {
+        folder_.emplace(
+            RunFolder::make(options_.out, options_.force,
+                            files_of(world_.scene(), world_.model(), world_.controls()),
+                            inputs_of(world_.scene()), document_with_base(world_.scene())));
+      }
       recorder_.emplace(world_.scene(), world_.model(), options_.out, run_);
     }
     if (!resumed_) {
@@ -84,7 +88,7 @@ class Runner {
     Clock::time_point saved = Clock::now();
     try {
       while (run_.frame < frames) {
-        const bool finished = world_.advance_frame(options_.stop);
+        const bool finished = advance();
         count_time();
         if (finished) {
           record();
@@ -113,6 +117,34 @@ class Runner {
   }
 
  private:
+  bool advance() {
+    struct Marked {
+      explicit Marked(std::atomic<bool>* at) : mark(at) { set(true); }
+      ~Marked() { set(false); }
+      void set(bool value) const {
+        if (mark != nullptr) mark->store(value);
+      }
+      std::atomic<bool>* mark;
+    };
+    const Marked marked(options_.stepping);
+    return world_.advance_frame(options_.stop);
+  }
+
+  void warn_before() {
+    if (auto slow = cost_warning(world_)) slow_ = std::move(*slow);
+    if (!options_.on_warning) return;
+    if (!resumed_)
+      for (const std::string& w : world_.warnings()) options_.on_warning(w);
+    if (!slow_.empty()) options_.on_warning(slow_);
+  }
+
+  // Goes on with another duration or other frames than the checkpoint was made with.
+  void plan_anew(std::int64_t frames) {
+    world_.stepping().resume_at(run_);
+    const double left = world_.scene().duration - run_.state.time;
+    if (left <= 1e-9 * world_.stepping().frame_interval()) run_.frame = frames;
+  }
+
   void count_time() { run_.wall_seconds = wall_before_ + seconds_since(start_); }
 
   // The sum of all terms at the state [N] (nodes).
@@ -125,8 +157,12 @@ class Runner {
     if (recorder_) recorder_->record(world_.controls(), run_, force(), world_.finder());
   }
 
-  void save() const {
-    if (!options_.out.empty()) world_.write_checkpoint(options_.out / checkpoint_name);
+  // What the checkpoint counts on is on the disk before it.
+  void save() {
+    if (!recorder_) return;
+    recorder_->sync();
+    write_run_checkpoint(options_.out / checkpoint_name, world_.scene().document,
+                         world_.model().hash(), run_);
   }
 
   void report(const Progress& progress) const {
@@ -148,6 +184,7 @@ class Runner {
         summarize(scene, world_.model(), world_.controls(), meshes, run_, force(), world_.finder());
     s.status = status;
     s.warnings = warnings();
+    if (!slow_.empty()) s.warnings.push_back(slow_);
     if (scene.dt && run_.step_reductions > 0) {
       s.warnings.push_back(
           fmt::format("the given step {:.4g} s was above the stable one ({:.4g} s at the least) as "
@@ -181,43 +218,65 @@ class Runner {
   sim::World& world_;
   RunState& run_;
   const RunOptions& options_;
+  const bool edited_;  // since the checkpoint, within what may change
   const Clock::time_point start_;
   const double wall_before_;
   const bool resumed_;
+  std::string slow_;  // warning about the time that the run takes
+  std::optional<RunFolder> folder_;
   std::optional<Recorder> recorder_;
 };
 
-RunResult build_and_run(const Scene& scene, const RunOptions& options, bool resume) {
+RunResult build_and_run(const Scene& scene, const RunOptions& options,
+                        const RunCheckpoint* checkpoint) {
   Clock::time_point start;
+  bool edited = false;
   sim::WorldOptions how;
   how.stepping = [](const Scene& s) { return stepping_options(s); };
-  how.start = [&](const Model& model, const BuildReport& report) {
+  how.start = [&](const Model& model, const BuildReport&) {
     start = Clock::now();
-    if (resume) return read_checkpoint(options.out / checkpoint_name, model);
-    if (options.on_warning)
-      for (const std::string& w : report.warnings) options.on_warning(w);
+    if (checkpoint != nullptr) {
+      RunState run = state_of(*checkpoint, options.out / checkpoint_name, model);
+      const auto changes = scene_changes(checkpoint->document, scene.document);
+      require_same_run(changes, scene, run.state.time);
+      edited = !changes.empty();
+      return run;
+    }
     RunState run;
     run.state = initial_state(model);
     return run;
   };
   Simulation simulation = sim::simulate(scene, std::move(how));
-  return Runner(sim::internals(simulation), options, start).run();
+  return Runner(sim::internals(simulation), options, edited, start).run();
 }
 
 }  // namespace
 
 RunResult run_scene(const Scene& scene, const RunOptions& options) {
-  return build_and_run(scene, options, false);
+  if (!options.out.empty()) RunFolder::require_free(options.out, options.force);
+  return build_and_run(scene, options, nullptr);
 }
 
 RunResult resume_run(const std::filesystem::path& folder, const RunOptions& options) {
-  if (!fs::exists(folder / checkpoint_name) || !fs::exists(folder / scene_name)) {
+  std::error_code failed;
+  const bool there =
+      fs::exists(folder / checkpoint_name, failed) && fs::exists(folder / scene_name, failed);
+  if (failed)
+    throw Error(ErrorKind::io, "the folder cannot be read: " + failed.message(),
+                "check the path: its length, loops of links, permissions",
+                Location{folder.string()});
+  if (!there) {
     throw Error(ErrorKind::input, "nothing to resume: scene.toml and checkpoint.bin are not there",
                 "name the folder that 'sinew run' wrote", Location{folder.string()});
   }
+  const RunFolder lock = RunFolder::open(folder);
+  const RunCheckpoint checkpoint = read_run_checkpoint(folder / checkpoint_name);
   RunOptions here = options;
   here.out = folder;
-  return build_and_run(load_scene(folder / scene_name), here, true);
+  const Scene scene = load_scene(folder / scene_name);
+  // Before the build: most edits change the model.
+  require_same_run(scene_changes(checkpoint.document, scene.document), scene, 0.0);
+  return build_and_run(scene, here, &checkpoint);
 }
 
 int exit_code(const RunResult& result) {

@@ -30,7 +30,13 @@ struct RunOptions {
   std::function<void(const Progress&)> on_progress;  // called after every frame
   // Called before the first step of stepper = "auto" with RunState::stepper and the reason.
   std::function<void(StepperKind, const std::string&)> on_stepper;
-  // Called before the first step with each warning about the start. The summary has them too.
+  // Called once the scene is built, before the first file is written.
+  std::function<void()> on_start;
+  // True while steps are taken: a process that ends then loses them alone, and its folder can be
+  // resumed from the last checkpoint.
+  std::atomic<bool>* stepping = nullptr;
+  // Called before the first step with each warning about the scene, those about units and bodies
+  // that cannot keep their shape first. The summary has them too.
   std::function<void(const std::string&)> on_warning;
 };
 
@@ -43,12 +49,15 @@ struct RunResult {
 // Writes scene.toml (the scene with its overrides, from which the run can be resumed), NAME.pvd and
 // frames/*.vtu, probes.csv, energy.csv, frames.csv, checkpoint.bin, summary.json. Throws
 // Error(input) for a scene that cannot be built, Error(unstable) for a step above the stable one,
-// Error(usage) if `out` holds a run, Error(io). A run that diverges does not throw: its last good
+// Error(usage) if `out` holds a run or other files (run/folder.h), or another run is writing there,
+// Error(io). A run that diverges does not throw: its last good
 // frame, checkpoint and summary are kept.
 RunResult run_scene(const Scene& scene, const RunOptions& options);
 
 // Continues the run in `folder` from its checkpoint and ends with the same bits as an unbroken run.
-// options.out is ignored. Throws Error(input) if there is nothing to resume.
+// options.out and force are ignored. Another duration and other output than at the start take
+// effect. Throws Error(input) if there is nothing to resume, or if the scene was edited in a way
+// that changes the run (run/scene_changes.h); Error(usage) if another run is writing there.
 RunResult resume_run(const std::filesystem::path& folder, const RunOptions& options);
 
 // The exit code of the process for a result: 0, 130 (interrupted) or that of the error.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "sinew/base/hash.h"
 #include "sinew/contact/overlaps.h"
@@ -57,6 +58,21 @@ nlohmann::ordered_json to_json(const BudgetSummary& s) {
           {"largest_residual", s.largest_residual}};
 }
 
+// As measure_limit_violation(), of the distances between two pinned nodes: no step can enforce
+// them.
+double pinned_violation(const Model& model, const std::vector<Vec3>& x) {
+  double worst = 0.0;
+  for (Index i = model.first_attachment; i < model.spring_count(); ++i) {
+    const auto s = uz(i);
+    const auto a = uz(model.springs[s][0]), b = uz(model.springs[s][1]);
+    if (model.inverse_mass[a] + model.inverse_mass[b] > 0.0 || model.stretch_limit[s] != 0.0)
+      continue;
+    const double off = (x[b] - x[a]).norm() / model.rest_length[s] - 1.0;
+    worst = std::max(worst, model.compress_limit[s] == 0.0 ? std::abs(off) : off);
+  }
+  return worst;
+}
+
 }  // namespace
 
 Summary summarize(const Scene& scene, const Model& model, const Controls& controls,
@@ -92,7 +108,7 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   s.dt = run.step > 0.0 ? run.step : run.target_step;
   s.stable_step = run.smallest_stable_step;
   s.steps = run.state.step;
-  s.frames = run.frame;
+  s.frames = run.frame_times.empty() ? run.frame : std::ssize(run.frame_times) - 1;
   s.sim_seconds = run.state.time;
   s.wall_seconds = run.wall_seconds;
   s.energy = measure_energies(model, controls, run.state, force);
@@ -101,7 +117,7 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   s.max_stretch = range.stretch;
   s.max_compress = range.compress;
   for (const Overlap& o : find_overlaps(model, x)) s.overlap = std::max(s.overlap, o.depth);
-  s.limit_violation = measure_limit_violation(model, x);
+  s.limit_violation = std::max(measure_limit_violation(model, x), pinned_violation(model, x));
   if (scene.budget_ms) s.budget = summarize_budget(*scene.budget_ms, run);
   s.largest_cell_change = largest_cell_change(model, x);
   s.probes = read_probes(model, x);

@@ -10,7 +10,6 @@
 
 #include "sinew/contact/colliders.h"
 #include "sinew/contact/contact_surface.h"
-#include "sinew/contact/overlaps.h"
 #include "sinew/forces/assemble.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
@@ -23,6 +22,7 @@
 #include "sinew/scene/place.h"
 #include "sinew/scene/rigid_mesh.h"
 #include "sinew/scene/start.h"
+#include "sinew/scene/start_warnings.h"
 
 namespace sinew {
 
@@ -183,19 +183,21 @@ class Parts {
   Parts(const Scene& scene, const std::vector<PlacedBody>& bodies, Model& model)
       : scene_(scene), bodies_(bodies), model_(model) {}
 
-  void add() {
+  // Returns warnings.
+  std::vector<std::string> add() {
     for (const ScenePin& pin : scene_.pins) add_pin(pin);
     for (const SceneForce& f : scene_.forces) add_load(f);
     for (const SceneProbe& p : scene_.probes)
       model_.probes.push_back(
           {p.name, select(p.body, p.select, "'select' of [probe." + p.name + "]")});
-    connect(scene_, bodies_, model_);
+    std::vector<std::string> warnings = connect(scene_, bodies_, model_);
     for (const SceneObstacle& o : scene_.obstacles) add_obstacle_of(o);
     // The ground comes last: obstacles of the scene keep their numbers.
     if (const auto& g = scene_.ground) {
       add_obstacle(model_, make_ground(g->point, g->normal, g->restitution, g->friction));
       build_skin(model_);
     }
+    return warnings;
   }
 
  private:
@@ -283,45 +285,6 @@ class Parts {
   std::vector<const ScenePin*> holder_;  // (nodes)
 };
 
-bool can_move(const Model& model, const Body& body) {
-  for (Index i = body.nodes.begin; i < body.nodes.end; ++i)
-    if (model.inverse_mass[uz(i)] > 0.0) return true;
-  return false;
-}
-
-// Overlaps at the start of the run: each pair is reported once, by the deeper side.
-std::vector<std::string> overlap_warnings(const Model& model) {
-  constexpr std::size_t most = 5;  // pairs that are named
-  constexpr double small = 1e-3;   // of the other body's mean tet: bodies that lie flush
-  const std::vector<Vec3> x = initial_state(model).position;
-  std::map<std::pair<Index, Index>, Overlap> pairs;
-  for (const Overlap& o : find_overlaps(model, x)) {
-    const Body &a = model.bodies[uz(o.a)], &b = model.bodies[uz(o.b)];
-    const double size =
-        std::cbrt(b.rest_volume / std::max(1.0, static_cast<double>(b.tets.size())));
-    if (o.depth < small * size || (!can_move(model, a) && !can_move(model, b))) continue;
-    Overlap& worst = pairs[std::minmax(o.a, o.b)];
-    if (o.depth > worst.depth) worst = o;
-  }
-  std::vector<std::string> warnings;
-  for (const auto& [pair, o] : pairs) {
-    if (warnings.size() == most) {
-      warnings.push_back(pairs.size() == most + 1
-                             ? "1 more pair of bodies overlaps"
-                             : fmt::format("{} more pairs of bodies overlap", pairs.size() - most));
-      break;
-    }
-    const std::string& inner = model.bodies[uz(o.a)].name;
-    const std::string& outer = model.bodies[uz(o.b)].name;
-    warnings.push_back(fmt::format(
-        "bodies {0} and {1} overlap at the start: {2} of the nodes of {0} are inside {1}, up to "
-        "{3:.3g} m deep ({4}); move them apart by 'position': contacts push out slowly what is a "
-        "little inside, and not at all what is deeper than a third of a tet",
-        inner, outer, o.nodes, o.depth, model.node_name(o.deepest)));
-  }
-  return warnings;
-}
-
 }  // namespace
 
 Model build_model(const Scene& scene, BuildReport* report) {
@@ -333,11 +296,13 @@ Model build_model(const Scene& scene, BuildReport* report) {
   if (const auto& c = scene.contact)
     model.body_contact = BodyContact{c->bodies, c->self, c->friction, c->restitution};
   build_contact_surface(model);
-  Parts(scene, bodies, model).add();
+  std::vector<std::string> warnings = Parts(scene, bodies, model).add();
   build_contact_surface(model);
   finish(model);
-  if (report != nullptr && model.body_contact && model.body_contact->bodies)
-    report->warnings = overlap_warnings(model);
+  if (report != nullptr) {
+    report->warnings = std::move(warnings);
+    for (std::string& w : start_warnings(scene, model)) report->warnings.push_back(std::move(w));
+  }
   return model;
 }
 

@@ -19,7 +19,7 @@ struct BuildReport {
     std::vector<std::string> warnings;  // repairs; implausible sizes
   };
   std::vector<Body> bodies;
-  std::vector<std::string> warnings;  // bodies that overlap at the start
+  std::vector<std::string> warnings;  // about the start (scene/start_warnings.h), distances
 };
 
 // Throws Error(input), with the place in the scene file if there is one, for a mesh that is missing

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "sinew/forces/assemble.h"
 #include "sinew/scene/glue.h"
@@ -17,7 +19,7 @@ class Connector {
   Connector(const Scene& scene, const std::vector<PlacedBody>& bodies, Model& model)
       : scene_(scene), bodies_(bodies), model_(model) {}
 
-  void connect() {
+  std::vector<std::string> connect() {
     for (const SceneAttachment& a : scene_.attachments) {
       if (a.point)
         attach_to_point(a);
@@ -27,6 +29,7 @@ class Connector {
         attach_to_body(a);
     }
     for (const SceneDistance& d : scene_.distances) keep_distance(d);
+    return std::move(warnings_);
   }
 
  private:
@@ -107,6 +110,34 @@ class Connector {
                             "glued: [attachment.NAME] with within",
                   d.where);
     add_distance(model_, from, to, d.length.value_or(start), d.rope);
+    if (d.length) check_length(d, from, to);
+  }
+
+  // The path of the pin that holds a node; null: the node is free.
+  const Path* path_of(Index node) const {
+    for (const Pin& pin : model_.pins)
+      if (std::find(pin.nodes.begin(), pin.nodes.end(), node) != pin.nodes.end()) return &pin.path;
+    return nullptr;
+  }
+
+  void check_length(const SceneDistance& d, Index from, Index to) {
+    const Path *a = path_of(from), *b = path_of(to);
+    const Vec3 p = a != nullptr ? a->at(0.0, position(from)) : position(from);
+    const Vec3 q = b != nullptr ? b->at(0.0, position(to)) : position(to);
+    const double start = (q - p).norm();
+    const double off = d.rope ? std::max(0.0, start - *d.length) : std::abs(start - *d.length);
+    const bool held = a != nullptr && b != nullptr;
+    if (!(off > (held ? model_.limit_tolerance : 0.1) * *d.length)) return;
+    if (held)
+      warnings_.push_back(fmt::format(
+          "distance {} cannot hold: both of its ends are pinned, {:.4g} m apart, and its length is "
+          "{:.4g} m; leave one end free, or leave length out",
+          d.name, start, *d.length));
+    else
+      warnings_.push_back(fmt::format(
+          "distance {} jumps at the start: its ends are {:.4g} m apart and its length is {:.4g} m, "
+          "which the first steps enforce; begin at that length, or leave length out",
+          d.name, start, *d.length));
   }
 
   Index anchor_at(const std::string& name, const Vec3& point, Path path, bool pivot_given) {
@@ -122,6 +153,7 @@ class Connector {
   const Scene& scene_;
   const std::vector<PlacedBody>& bodies_;
   Model& model_;
+  std::vector<std::string> warnings_;
 };
 
 }  // namespace
@@ -139,8 +171,9 @@ std::vector<Index> select_in_model(const std::vector<PlacedBody>& bodies, const 
   return nodes;
 }
 
-void connect(const Scene& scene, const std::vector<PlacedBody>& bodies, Model& model) {
-  Connector(scene, bodies, model).connect();
+std::vector<std::string> connect(const Scene& scene, const std::vector<PlacedBody>& bodies,
+                                 Model& model) {
+  return Connector(scene, bodies, model).connect();
 }
 
 }  // namespace sinew

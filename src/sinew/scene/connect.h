@@ -1,6 +1,7 @@
 // Connections of bodies to points and to each other: attachments, glue, distances.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "sinew/model/model.h"
@@ -11,8 +12,10 @@ namespace sinew {
 
 // Adds the scene's attachments and distances to the model, which must have all of its bodies.
 // Throws Error(input), with the place in the scene file, for a selection without nodes, a distance
-// between coincident nodes, or glue without a surface in reach.
-void connect(const Scene& scene, const std::vector<PlacedBody>& bodies, Model& model);
+// between coincident nodes, or glue without a surface in reach. Returns warnings: distances that do
+// not hold at the start.
+std::vector<std::string> connect(const Scene& scene, const std::vector<PlacedBody>& bodies,
+                                 Model& model);
 
 // The body of that name.
 const PlacedBody& body_named(const std::vector<PlacedBody>& bodies, const std::string& name);

@@ -100,7 +100,11 @@ std::pair<std::string, std::string> split_message(std::string told) {
 // `called`: how messages name the file.
 void fill(const fs::path& path, const std::string& called, const fs::path& out, double size,
           const Location& where) {
-  std::vector<std::string> command = {mesher(), path.string(), "-q", "--force", "-o", out.string()};
+  // Absolute: a name that begins with '-' is no option.
+  std::error_code failed;
+  const std::string name = fs::absolute(path, failed).string();
+  std::vector<std::string> command = {mesher(),  name, "-q",
+                                      "--force", "-o", fs::absolute(out, failed).string()};
   if (size > 0) {
     command.insert(command.end(), {"--size", fmt::format("{}", size)});
   }
@@ -117,7 +121,6 @@ void fill(const fs::path& path, const std::string& called, const fs::path& out, 
         "SINEW_MESH",
         where);
   }
-  const std::string name = path.string();
   for (std::size_t at = told.find(name); name != called && at != told.npos;
        at = told.find(name, at + called.size())) {
     told.replace(at, name.size(), called);

@@ -81,9 +81,9 @@ KeyTables make_tables() {
                  word("precision", "\"single\"", all_words<Precision>()),
                  number("tolerance", "", "1e-6", {1e-12, 0.1}),
                  number("budget_ms", "ms", "", positive),
-                 {"dt", T::number_or_word, "s", "\"auto\"", positive, "auto"},
+                 {"dt", T::number_or_word, "s", "\"auto\"", {0.0, 1e6, true}, "auto"},
                  integer("substeps", "1", from_to(1, 100000)),
-                 number("safety", "", "0.9", {0.0, 1.0, true}),
+                 number("safety", "", "0.9", from_to(0.001, 1)),
                  boolean("allow_unstable", "false"),
                  point("gravity", "m/s2", "[0, -9.81, 0]"),
                  integer("limit_sweeps", "20", from_to(0, 10000)),
@@ -163,7 +163,7 @@ KeyTables make_tables() {
                  "a key frame",
                  {
                      number("time", "s", "", not_negative),
-                     point("move", "m", "[0, 0, 0]"),
+                     point("move", "m", "[0, 0, 0]", from_to(-1e9, 1e9)),
                      point("turn", "degrees", "[0, 0, 0]"),
                      other("deform", T::matrix, "", "[1, 0, 0, 0, 1, 0, 0, 0, 1]"),
                  }};

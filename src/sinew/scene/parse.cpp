@@ -177,8 +177,10 @@ std::string read_scene_text(const std::filesystem::path& file, std::string_view 
   const std::string name = file.string();
   std::error_code failed;
   if (!std::filesystem::exists(file, failed))
-    throw Error(ErrorKind::io, fmt::format("there is no such {} file", kind), "check the path",
-                {name, 0, 0});
+    throw Error(ErrorKind::io,
+                failed ? fmt::format("the {} file cannot be read: {}", kind, failed.message())
+                       : fmt::format("there is no such {} file", kind),
+                "check the path", {name, 0, 0});
   if (!std::filesystem::is_regular_file(file, failed))
     throw Error(ErrorKind::io, "this is no file",
                 kind == "scene" ? "name a scene file, such as scenes/beam.toml" : "check the path",

@@ -199,9 +199,9 @@ PlacedBody place(const Scene& scene, const SceneBody& body) {
   const bool said_to_be_metres = body.scale_given && body.scale == 1.0;
   const auto warning = size_warning(volume, placed.high - placed.low, body.scale);
   if (warning && !said_to_be_metres) {
-    placed.warnings.push_back(*warning);
+    placed.warnings.insert(placed.warnings.begin(), *warning);
   } else if (const auto flat = weight_warning(scene, placed)) {
-    placed.warnings.push_back(*flat);
+    placed.warnings.insert(placed.warnings.begin(), *flat);
   }
   return placed;
 }

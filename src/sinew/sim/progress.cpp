@@ -9,7 +9,6 @@
 #include "sinew/base/error.h"
 #include "sinew/forces/springs.h"
 #include "sinew/io/file_io.h"
-#include "sinew/sim/checkpoint.h"
 #include "sinew/sim/readings.h"
 #include "sinew/sim/world.h"
 
@@ -107,10 +106,6 @@ void World::log_frame() {
   run_.peak_inverted_tets =
       std::max(run_.peak_inverted_tets, count_inverted(*model_, run_.state.position));
   run_.frame_times.push_back(run_.state.time);
-}
-
-void World::write_checkpoint(const std::filesystem::path& file) const {
-  sinew::write_checkpoint(file, model_hash_, run_);
 }
 
 // Called at the end of a frame, and after a step of a length that the host chose.

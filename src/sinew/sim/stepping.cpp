@@ -26,16 +26,51 @@ double typed_step(double h) {
 }
 
 [[noreturn]] void refuse(const SteppingOptions& options, const FirstStep& first) {
+  constexpr double most_substeps = 100000.0;  // as in scene/keys.cpp
+  const double substeps = *options.dt / first.stable;
   throw Error(
       ErrorKind::unstable,
       fmt::format("the step {:.4g} s is above the largest stable one, {:.4g} s; {}",
                   options.given(), first.stable, first.limited_by),
-      fmt::format("a smaller step (dt <= {:.3g}, or dt = \"auto\"); or more substeps (substeps = "
-                  "{}); or a softer material or a coarser mesh. allow_unstable = true runs it all "
-                  "the same",
+      fmt::format("a smaller step (dt <= {:.3g}, or dt = \"auto\"); {}or a softer material or a "
+                  "coarser mesh. allow_unstable = true runs it all the same",
                   typed_step(first.stable * options.substeps),
-                  count_parts(*options.dt, first.stable)),
+                  substeps < most_substeps ? fmt::format("or more substeps (substeps = {}); ",
+                                                         count_parts(*options.dt, first.stable))
+                                           : std::string()),
       Location{options.file});
+}
+
+// Throws for a given step that does not fit into the run, or is so short that its steps cannot be
+// counted.
+void check_given(const SteppingOptions& options) {
+  const double given = options.given();
+  if (!(given <= options.duration * (1.0 + 1e-9)))
+    throw Error(ErrorKind::input,
+                fmt::format("the step {:g} s is longer than the whole run, {:g} s", given,
+                            options.duration),
+                "a smaller dt, or a longer duration", Location{options.file});
+  count_parts(options.duration < no_limit ? options.duration : options.interval, given);
+}
+
+// Throws if the step has left an account or a node that is not a number.
+void require_finite(const RunState& run) {
+  const State& s = run.state;
+  const bool account = std::isfinite(s.energy.dissipated) && std::isfinite(s.energy.work_in) &&
+                       std::isfinite(run.friction_work);
+  // The explicit step checks its nodes itself, by name.
+  const bool nodes = run.stepper == StepperKind::verlet ||
+                     (std::all_of(s.position.begin(), s.position.end(),
+                                  [](const Vec3& x) { return x.allFinite(); }) &&
+                      std::all_of(s.half_velocity.begin(), s.half_velocity.end(),
+                                  [](const Vec3& v) { return v.allFinite(); }));
+  if (account && nodes) return;
+  throw Error(ErrorKind::diverged,
+              fmt::format("{} at {:.6g} s, in step {}",
+                          nodes ? "the energy account is no longer finite"
+                                : "the positions are no longer finite",
+                          s.time, s.step),
+              "look for forces, speeds or stiffnesses out of all proportion: they are in SI units");
 }
 
 // Rest states differ from frame to frame only where pins, loads, obstacles or tools change with
@@ -57,7 +92,10 @@ Stepping::Stepping(const SteppingOptions& options, const Model& model, const Con
   const StepperKind kind = goes_on ? run.stepper : options.stepper;
   const bool rest = kind == StepperKind::rest && options.pace == Pace::any;
   if (rest) options_.dt.reset();  // rest states have no step length
-  if (options_.dt) options_.interval = std::max(options_.interval, options_.given());
+  if (options_.dt) {
+    check_given(options_);
+    options_.interval = std::max(options_.interval, options_.given());
+  }
   frame_interval_ = options_.interval;
   if (rest && !changes_with_time(model, controls) && options_.duration < no_limit) {
     options_.interval = options_.duration;
@@ -79,9 +117,11 @@ void Stepping::begin_run(const Controls& controls, RunState& run) {
   run.memory = std::move(choice.memory);
   run.smallest_stable_step = choice.first.stable;
   run.target_step = options_.first_length(choice.first);
+  limited_by_ = choice.first.limited_by;
   if (!automatic() && run.target_step > choice.first.stable && !options_.allow_unstable) {
     refuse(options_, choice.first);
   }
+  if (options_.duration < no_limit) count_parts(options_.duration, run.target_step);
 }
 
 double Stepping::frame_end(std::int64_t frame) const {
@@ -163,6 +203,7 @@ bool Stepping::one_step(const Controls& controls, RunState& run, const std::atom
   }
   const StepReport report = stepper_->step(run.step, controls, interrupt, run.state, run.memory);
   run.add(report);
+  require_finite(run);
   run.work.add(report);
   ++run.work.steps;
   run.work.seconds += seconds_since(start);

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string>
 
 #include "sinew/model/controls.h"
 #include "sinew/sim/run_state.h"
@@ -59,6 +60,8 @@ class Stepping {
   // Between the ends of frames [s], also where rest states need only one.
   double frame_interval() const { return frame_interval_; }
   ForceEvaluator& forces() { return stepper_->forces(); }
+  // The cause of the limit on the stable step, when the run began; empty for a resumed run.
+  const std::string& limited_by() const { return limited_by_; }
 
  private:
   bool automatic() const { return !options_.dt; }
@@ -78,6 +81,7 @@ class Stepping {
   double frame_interval_ = 0.0;
   std::unique_ptr<Stepper> stepper_;
   std::int64_t frames_ = 0;
+  std::string limited_by_;
 };
 
 }  // namespace sinew

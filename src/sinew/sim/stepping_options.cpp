@@ -1,8 +1,12 @@
 #include "sinew/sim/stepping_options.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "sinew/base/error.h"
 
 namespace sinew {
 
@@ -28,8 +32,16 @@ SteppingOptions stepping_options(const Scene& scene) {
 }
 
 std::int64_t count_parts(double whole, double part) {
-  return std::max<std::int64_t>(1,
-                                static_cast<std::int64_t>(std::ceil(whole / part * (1.0 - 1e-12))));
+  constexpr double most = 9007199254740992.0;  // 2^53: a double counts up to here, one by one
+  const double parts = std::ceil(whole / part * (1.0 - 1e-12));
+  if (!(parts <= most))
+    throw Error(ErrorKind::input,
+                fmt::format("{:g} s in steps of {:g} s would take {:.3g} steps, more than can be "
+                            "counted",
+                            whole, part, parts),
+                "a longer step (dt, or dt = \"auto\", with fewer substeps), a softer material or a "
+                "coarser mesh, or a shorter duration");
+  return std::max<std::int64_t>(1, static_cast<std::int64_t>(parts));
 }
 
 std::int64_t count_frames(double duration, double interval) {

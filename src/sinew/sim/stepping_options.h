@@ -42,7 +42,8 @@ SteppingOptions stepping_options(const Scene& scene);
 std::int64_t count_frames(double duration, double interval);
 
 // The least number of parts of at most `part` that make up `whole`, at least one. A quotient that
-// is above an integer only by rounding counts as that integer.
+// is above an integer only by rounding counts as that integer. Throws Error(input) for more than
+// 2^53.
 std::int64_t count_parts(double whole, double part);
 
 }  // namespace sinew

@@ -24,10 +24,11 @@ std::uint64_t next_serial() {
 }
 
 std::vector<std::string> warnings_of(const Scene& scene, const BuildReport& report) {
-  std::vector<std::string> out = scene.warnings;
+  std::vector<std::string> out;  // units and loose bodies first
   for (const BuildReport::Body& body : report.bodies)
     for (const std::string& w : body.warnings)
       out.push_back(fmt::format("body {}: {}", body.name, w));
+  out.insert(out.end(), scene.warnings.begin(), scene.warnings.end());
   out.insert(out.end(), report.warnings.begin(), report.warnings.end());
   return out;
 }

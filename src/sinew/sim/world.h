@@ -77,8 +77,6 @@ class World {
   void keep();
   // Adds the finished frame to the run's log: its time, and the peaks over all frames.
   void log_frame();
-  // Throws Error(io).
-  void write_checkpoint(const std::filesystem::path& file) const;
 
   // ---- handles of this world (handles.cpp) ----
   ObstacleHandle obstacle(std::string_view name) const;

@@ -1,0 +1,61 @@
+#include "sinew/run/cost.h"
+
+#include <fmt/format.h>
+
+#include "sinew/base/clock.h"
+
+namespace sinew {
+namespace {
+
+constexpr double a_day = 86400.0;  // [s]
+// The cost of a step in evaluations of the forces: an explicit one with its estimates of the stable
+// step; of an implicit one a small number of Newton steps.
+constexpr double explicit_step = 1.3;
+constexpr double implicit_step = 30.0;
+
+double steps_left(const sim::World& world) {
+  const RunState& run = world.run();
+  if (run.stepper == StepperKind::rest || !(run.target_step > 0.0)) return 0.0;
+  return (world.scene().duration - run.state.time) / run.target_step;
+}
+
+// [s]
+double cost_of_step(sim::World& world) {
+  ForceEvaluator& forces = world.stepping().forces();
+  forces.evaluate(world.controls(), world.state());  // the first one finds cold memory
+  const Clock::time_point start = Clock::now();
+  forces.evaluate(world.controls(), world.state());
+  return seconds_since(start) *
+         (world.run().stepper == StepperKind::implicit ? implicit_step : explicit_step);
+}
+
+std::string time_text(double seconds) {
+  constexpr double a_year = 365.0 * a_day;
+  return seconds < 2.0 * a_year ? fmt::format("{:.3g} days", seconds / a_day)
+                                : fmt::format("{:.3g} years", seconds / a_year);
+}
+
+std::string reason(const sim::World& world) {
+  if (world.scene().dt) return "the scene gives this step";
+  const std::string& by = world.stepping().limited_by();
+  return by.empty() ? "the stable step allows no longer one" : by;
+}
+
+}  // namespace
+
+double estimate_cost(sim::World& world) {
+  const double steps = steps_left(world);
+  return steps > 0.0 ? steps * cost_of_step(world) : 0.0;
+}
+
+std::optional<std::string> cost_warning(sim::World& world) {
+  const double cost = estimate_cost(world);
+  if (!(cost > a_day)) return std::nullopt;
+  const double steps = steps_left(world);
+  return fmt::format(
+      "this run would take about {}: {:.3g} steps of {:.3g} s at {:.2g} s each; {}; take a longer "
+      "step, a softer material, a coarser or better mesh (sinew info), or a shorter duration",
+      time_text(cost), steps, world.run().target_step, cost / steps, reason(world));
+}
+
+}  // namespace sinew

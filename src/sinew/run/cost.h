@@ -1,0 +1,18 @@
+// The wall time that a run will take, before it starts.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "sinew/sim/world.h"
+
+namespace sinew {
+
+// Wall time that the rest of a run takes [s], from the count of its steps and one measured
+// evaluation of the forces; 0 for rest states. Contacts and output come on top.
+double estimate_cost(sim::World& world);
+
+// A sentence with the estimate and its reason if it is more than a day.
+std::optional<std::string> cost_warning(sim::World& world);
+
+}  // namespace sinew
