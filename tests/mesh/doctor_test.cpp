@@ -175,7 +175,8 @@ TEST(Doctor, DuplicateNodesAndParts) {
             "not be connected");
   EXPECT_EQ(diagnosis.problems[1].kind, ProblemKind::components);
   EXPECT_EQ(diagnosis.problems[1].text,
-            "2 unconnected parts (0, 6): they share no node, so they do not pull at each other; "
+            "2 unconnected parts (0, 6): of 6, 6 tets; they share no node, so they do not pull at "
+            "each other; "
             "the ids are each part's first tet");
 }
 
@@ -255,8 +256,7 @@ TEST(Repair, RefusesWithEveryFatalProblem) {
     EXPECT_STREQ(error.what(),
                  "heart.mesh: the mesh cannot be simulated: 1 tet (2): names the same node twice; "
                  "1 duplicate tet (3): the same four nodes as an earlier tet (ids count from 0)\n"
-                 "  remedy: remove collapsed tets in the mesher; remove duplicate tets in the "
-                 "mesher");
+                 "  remedy: sinew repair IN OUT removes them");
   }
   EXPECT_EQ(mesh.tets, before.tets);
 }
