@@ -142,49 +142,35 @@ void GmshLabels::describe(ReadNotes& notes) const {
   if (source_ == Source::both && ungrouped_) notes.tet_labels += ", entities of cells in none";
 }
 
-namespace {
-
-// Keeps the first of the cells that have the same nodes and are in different groups.
-template <typename Cell>
-std::size_t merge(std::vector<Cell>& cells, std::vector<int>& labels,
-                  const std::vector<int>& groups) {
-  std::vector<std::pair<Cell, std::size_t>> keys;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    Cell key = cells[i];
+void GmshFile::merge_groups() {
+  std::vector<std::pair<Tet, std::size_t>> keys;
+  for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
+    Tet key = mesh.tets[i];
     std::sort(key.begin(), key.end());
     keys.emplace_back(key, i);
   }
   std::sort(keys.begin(), keys.end());
-  std::vector<char> dropped(cells.size(), 0);
+  std::vector<char> dropped(mesh.tets.size(), 0);
   for (std::size_t first = 0, k = 1; k < keys.size(); ++k) {
     if (keys[k].first != keys[first].first) {
       first = k;
-    } else if (groups[keys[k].second] != groups[keys[first].second]) {
+    } else if (tet_group[keys[k].second] != tet_group[keys[first].second]) {
       dropped[keys[k].second] = 1;
     }
   }
   std::size_t kept = 0;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
     if (dropped[i] != 0) continue;
-    cells[kept] = cells[i];
-    labels[kept++] = labels[i];
+    mesh.tets[kept] = mesh.tets[i];
+    mesh.tet_label[kept++] = mesh.tet_label[i];
   }
-  const std::size_t merged = cells.size() - kept;
-  cells.resize(kept);
-  labels.resize(kept);
-  return merged;
-}
-
-}  // namespace
-
-void GmshFile::merge_groups() {
-  const std::size_t tets = merge(mesh.tets, mesh.tet_label, tet_group);
-  const std::size_t faces = merge(mesh.faces, mesh.face_label, face_group);
-  if (tets + faces == 0) return;
+  const std::size_t merged = mesh.tets.size() - kept;
+  mesh.tets.resize(kept);
+  mesh.tet_label.resize(kept);
+  if (merged == 0) return;
   notes.remarks.push_back(
-      fmt::format("{} tets and {} faces stand in the file once more for another physical group; "
-                  "the first group is their label",
-                  tets, faces));
+      fmt::format("{} tet{} in several physical groups; the first group in the file is the label",
+                  merged, merged == 1 ? " is" : "s are"));
 }
 
 namespace {

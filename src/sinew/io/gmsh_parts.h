@@ -64,7 +64,7 @@ struct GmshFile {
   CornerCells quadratic;
   GmshLabels labels;
   ReadNotes& notes;
-  std::vector<int> tet_group, face_group;  // physical tags (tets), (faces)
+  std::vector<int> tet_group;  // physical tag (tets)
 
   std::int64_t size(const Wanted& wanted);  // a size_t
   void expect_end(std::string_view section);
@@ -76,7 +76,8 @@ struct GmshFile {
   template <typename ReadId>
   void element(const CellType& type, std::int64_t id, GmshTags tags, ReadId read_id);
   Index node(std::int64_t id, std::string_view kind, std::int64_t element);
-  // Gmsh 2 lists a cell once for each of its groups: the first stays.
+  // Gmsh 2 lists a tet once for each of its groups: the first stays. (Faces keep all labels: the
+  // two sides of an interface may have different ones.)
   void merge_groups();
 };
 
@@ -120,7 +121,6 @@ void GmshFile::element(const CellType& type, std::int64_t id, GmshTags tags, Rea
     for (Index& corner : face) corner = node(read_id(), "triangle", id);
     mesh.faces.push_back(face);
     mesh.face_label.push_back(labels.label(tags));
-    face_group.push_back(tags.physical);
     left -= 3;
   } else if (type.use == CellUse::refuse) {
     refused.add(type.name);
