@@ -29,7 +29,8 @@ Problem only_problem(const TetMesh& mesh) {
   for (std::size_t p = 1; p < diagnosis.problems.size(); ++p) {
     ADD_FAILURE() << "also: " << diagnosis.problems[p].text;
   }
-  if (diagnosis.problems.empty()) return {ProblemKind::empty, Severity::fatal, 0, {}, "none", ""};
+  if (diagnosis.problems.empty())
+    return {ProblemKind::empty, Severity::fatal, 0, {}, {}, "none", ""};
   return diagnosis.problems.front();
 }
 

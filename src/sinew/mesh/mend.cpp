@@ -234,8 +234,6 @@ bool Mender::remove_at_surface(Index t) {
   const auto inside =
       std::count_if(tet(t).begin(), tet(t).end(), [&](Index i) { return outside_[uz(i)] == 0; });
   if (open == 0 || (open == 1 && inside == 0) || mesh_.tets.size() == 1) return false;
-  for (const Index i : tet(t))
-    if (around_[uz(i)].size() < 2) return false;  // the node would be lost
   for (const Index i : tet(t)) touched_[uz(i)] = 1;
   dropped_[uz(t)] = 1;
   ++report_.removed_tets;
