@@ -8,20 +8,20 @@
 namespace sinew {
 namespace {
 
-constexpr const char* scene = R"(
+constexpr const char* tiny_node_scene = R"(
 duration = 0.2
 [body.b]
 mesh = "../tests/data/meshes/repair/tiny-node.vtu"
 scale = 0.001
 )";
 
-std::optional<std::string> warning(const std::vector<std::string>& overrides = {}) {
-  const Scene s = test::parse(scene, overrides);
+std::optional<std::string> warning_with(const std::vector<std::string>& overrides = {}) {
+  const Scene s = test::parse(tiny_node_scene, overrides);
   return step_warning(s, place(s, s.bodies[0]));
 }
 
 TEST(StepCost, NamesTheTetTheStepsAndTheRemedy) {
-  const auto text = warning();
+  const auto text = warning_with();
   ASSERT_TRUE(text.has_value());
   for (const char* part :
        {"tet ", "radius ratio 6.5e-08", "repair = true", "\"implicit\"", "for 0.2 s"})
@@ -29,9 +29,9 @@ TEST(StepCost, NamesTheTetTheStepsAndTheRemedy) {
 }
 
 TEST(StepCost, NothingForOtherSteppersAndRepairedMeshes) {
-  EXPECT_FALSE(warning({"stepper=implicit"}).has_value());
-  EXPECT_FALSE(warning({"b.repair=true"}).has_value());
-  EXPECT_FALSE(warning({"duration=1e-9"}).has_value());
+  EXPECT_FALSE(warning_with({"stepper=implicit"}).has_value());
+  EXPECT_FALSE(warning_with({"b.repair=true"}).has_value());
+  EXPECT_FALSE(warning_with({"duration=1e-9"}).has_value());
 }
 
 TEST(StepCost, TheUnitOfTheMeshIsTheFirstWarning) {

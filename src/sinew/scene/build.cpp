@@ -44,7 +44,7 @@ Vec3 mean(const Model& model, const std::vector<Index>& nodes) {
 // Where the labels come from, and what else the file offers.
 std::string label_source(const io::ReadNotes& notes) {
   std::string text;
-  if (!notes.tet_labels.empty()) text += fmt::format(" (from its {})", notes.tet_labels);
+  if (!notes.tet_labels.empty()) text += fmt::format(" (from the file's {})", notes.tet_labels);
   const std::string others = io::unused_cell_arrays(notes);
   if (!others.empty())
     text += fmt::format(
