@@ -19,6 +19,7 @@ Examples:
   sinew view scenes/liver.toml --open
   sinew info scenes/meshes/liver-10mm.mesh
   sinew convert liver.mesh liver.vtu
+  sinew repair heart.msh heart-sound.msh
   sinew materials liver)";
 
 }  // namespace
@@ -35,6 +36,7 @@ int main(int argc, char** argv) {
   add_view(app, status);
   add_info(app);
   add_convert(app);
+  add_repair(app);
   add_materials(app);
   add_identify(app);
   add_validate(app, status);
