@@ -25,7 +25,7 @@ _sinew() {
   local meshes=(mesh msh vtk vtu node ele)
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    _sinew_words "run resume view info convert identify converge validate materials bench completion --help --version"
+    _sinew_words "run resume view info convert repair identify converge validate materials bench completion --help --version"
     return
   fi
   case ${COMP_WORDS[1]}:$previous in
@@ -61,19 +61,20 @@ _sinew() {
       _sinew_files '*'
       return
       ;;
-    *:--meshes | *:--filter | *:--seconds | *:--threads | *:--set | *:--scale | *:--levels | *:--port | *:--host) return ;;
+    *:--meshes | *:--filter | *:--seconds | *:--threads | *:--set | *:--labels | *:--node-labels | *:--scale | *:--levels | *:--port | *:--host) return ;;
   esac
   case ${COMP_WORDS[1]}:$cur in
     run:-*) _sinew_words "-o --out --set --constraints --young --poisson --restitution --force --no-output --json -q --quiet --threads --help" ;;
     view:-*) _sinew_words "--scenes --port --open --host --set --constraints --young --poisson --restitution -q --quiet --threads --help" ;;
     view:*) _sinew_scenes "${meshes[@]}" ;;
     resume:-*) _sinew_words "--json -q --quiet --threads --help" ;;
-    info:-*) _sinew_words "--scale --json --help" ;;
-    convert:-*) _sinew_words "--scale --repair --format --force --help" ;;
+    info:-*) _sinew_words "--scale --labels --node-labels --json --help" ;;
+    repair:-*) _sinew_words "--force --help" ;;
+    convert:-*) _sinew_words "--scale --labels --node-labels --repair --format --force --help" ;;
     run:*) _sinew_scenes ;;
     resume:*) _sinew_files ;;
     identify:-*) _sinew_words "--young --poisson --law --density --damping-ratio --scale --html --json -q --quiet --help" ;;
-    info:* | convert:* | identify:*) _sinew_files "${meshes[@]}" ;;
+    info:* | convert:* | repair:* | identify:*) _sinew_files "${meshes[@]}" ;;
     converge:-*) _sinew_words "--levels --set --json -q --quiet --threads --help" ;;
     converge:*) _sinew_files toml ;;
     validate:-*) _sinew_words "--dir --law -o --out --quick --full --list --json -q --quiet --threads --help" ;;

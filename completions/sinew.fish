@@ -10,6 +10,7 @@ complete -c sinew -n __fish_use_subcommand -a resume -d 'Go on with a run from i
 complete -c sinew -n __fish_use_subcommand -a view -d 'Show a scene live in the browser'
 complete -c sinew -n __fish_use_subcommand -a info -d 'Examine a mesh'
 complete -c sinew -n __fish_use_subcommand -a convert -d 'Convert between mesh formats'
+complete -c sinew -n __fish_use_subcommand -a repair -d 'Join double nodes, remove flat tets'
 complete -c sinew -n __fish_use_subcommand -a identify -d 'Measure what each law makes of a material on a mesh'
 complete -c sinew -n __fish_use_subcommand -a converge -d 'See whether the answer depends on the mesh'
 complete -c sinew -n __fish_use_subcommand -a validate -d 'Compare the laws with reference values'
@@ -47,11 +48,12 @@ complete -c sinew -n $running -s q -l quiet -d 'Print errors only'
 complete -c sinew -n $running -l threads -x -d 'Threads to use'
 complete -c sinew -n '__fish_seen_subcommand_from resume' -a '(__fish_complete_directories)'
 
-set -l meshes '__fish_seen_subcommand_from info convert identify'
+set -l meshes '__fish_seen_subcommand_from info convert repair identify'
 for suffix in .mesh .msh .vtk .vtu .node .ele
     complete -c sinew -n $meshes -a "(__fish_complete_suffix $suffix)"
 end
-complete -c sinew -n $meshes -l scale -x -d 'Factor for the coordinates: 0.001 for mm'
+set -l scaled '__fish_seen_subcommand_from info convert identify'
+complete -c sinew -n $scaled -l scale -x -d 'Factor for the coordinates: 0.001 for mm'
 set -l converge '__fish_seen_subcommand_from converge'
 complete -c sinew -n $converge -a '(__fish_complete_suffix .toml)'
 complete -c sinew -n $converge -l levels -x -d 'Meshes, the own one included' -a '2 3 4 5'
@@ -86,7 +88,10 @@ set -l convert '__fish_seen_subcommand_from convert'
 complete -c sinew -n $convert -l repair -d 'Turn inverted tets, drop unreferenced nodes'
 complete -c sinew -n $convert -l format -x -d 'Variant of the format' \
     -a 'gmsh41 gmsh41-binary gmsh22 gmsh22-binary ascii binary zlib base64'
-complete -c sinew -n $convert -l force -d 'Replace existing files'
+complete -c sinew -n '__fish_seen_subcommand_from convert repair' -l force -d 'Replace existing files'
+set -l labelled '__fish_seen_subcommand_from info convert'
+complete -c sinew -n $labelled -l labels -x -d 'Array of the cells that holds the labels'
+complete -c sinew -n $labelled -l node-labels -x -d 'Array of the points that holds their labels'
 complete -c sinew -n '__fish_seen_subcommand_from info materials' -l json -d 'Print JSON'
 complete -c sinew -n '__fish_seen_subcommand_from materials' \
     -a 'artery brain breast fat heart kidney ligament liver muscle silicone-gel skin tendon'
@@ -101,7 +106,7 @@ complete -c sinew -n $bench -l json -r -d 'Write JSON here'
 complete -c sinew -n $bench -l peer -r -d 'Program whose rows join'
 complete -c sinew -n $bench -s q -l quiet -d 'No progress and no table'
 complete -c sinew -n '__fish_seen_subcommand_from completion' -a 'bash zsh fish'
-set -l any '__fish_seen_subcommand_from run resume info convert identify converge validate materials bench completion'
+set -l any '__fish_seen_subcommand_from run resume info convert repair identify converge validate materials bench completion'
 complete -c sinew -n $any -l help -d 'Show help'
 
 complete -c sinew-mesh -f

@@ -27,6 +27,7 @@ _sinew() {
         'view:Show a scene live in the browser'
         'info:Examine a mesh'
         'convert:Convert between mesh formats'
+        'repair:Join double nodes, remove flat tets'
         'identify:Measure what each law makes of a material on a mesh'
         'converge:See whether the answer depends on the mesh'
         'validate:Compare the laws with reference values'
@@ -77,10 +78,18 @@ _sinew() {
           ;;
         info)
           _arguments '--scale[Factor from the unit of the file to metres]:factor:' \
+            '--labels[Array of the cells that holds the labels]:name:' \
+            '--node-labels[Array of the points that holds their labels]:name:' \
             '--json[Print JSON]' '--help[Show help]' '1:mesh:_files -g "$meshes"'
+          ;;
+        repair)
+          _arguments '--force[Replace an existing file]' '--help[Show help]' \
+            '1:mesh:_files -g "$meshes"' '2:mesh:_files -g "$meshes"'
           ;;
         convert)
           _arguments '--scale[Factor for the coordinates]:factor:' \
+            '--labels[Array of the cells that holds the labels]:name:' \
+            '--node-labels[Array of the points that holds their labels]:name:' \
             '--repair[Turn inverted tets, drop unreferenced nodes]' \
             '--format[Variant of the format]:variant:(gmsh41 gmsh41-binary gmsh22 gmsh22-binary ascii binary zlib base64)' \
             '--force[Replace existing files]' '--help[Show help]' \

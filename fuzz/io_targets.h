@@ -67,10 +67,12 @@ inline void tetgen(std::string_view bytes) {
 
 inline void vtk(std::string_view bytes) {
   mesh_or_error([&] { return io::parse_vtk(bytes, "fuzz.vtk"); });
+  mesh_or_error([&] { return io::parse_vtk(bytes, "fuzz.vtk", {"material", "side"}); });
 }
 
 inline void vtu(std::string_view bytes) {
   mesh_or_error([&] { return io::parse_vtu(bytes, "fuzz.vtu"); });
+  mesh_or_error([&] { return io::parse_vtu(bytes, "fuzz.vtu", {"material", "side"}); });
 }
 
 // Tries all formats of surfaces; the bytes of one are rarely valid in another.

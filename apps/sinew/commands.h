@@ -8,6 +8,7 @@ void add_run(CLI::App& app, int& status);
 void add_resume(CLI::App& app, int& status);
 void add_info(CLI::App& app);
 void add_convert(CLI::App& app);
+void add_repair(CLI::App& app);
 void add_materials(CLI::App& app);
 void add_identify(CLI::App& app);
 void add_validate(CLI::App& app, int& status);

@@ -8,6 +8,8 @@
 #include <memory>
 
 #include "commands.h"
+#include "label_options.h"
+#include "refuse_existing.h"
 #include "scale_option.h"
 #include "sinew/base/error.h"
 #include "sinew/io/file_io.h"
@@ -34,6 +36,7 @@ struct ConvertArguments {
   std::string in;
   std::string out;
   double scale = 1;
+  io::LabelNames labels;
   bool repair = false;
   bool force = false;
   std::string format;
@@ -71,19 +74,6 @@ io::WriteOptions write_options(const std::string& ending, const std::string& nam
   return variant->second;
 }
 
-// The existing files that writing to `out` would replace.
-std::vector<fs::path> existing_outputs(const fs::path& out, const std::string& ending) {
-  std::vector<fs::path> files = {out};
-  if (ending == ".node" || ending == ".ele") {
-    files.clear();
-    for (const char* part : {".node", ".ele", ".face"}) {
-      files.push_back(fs::path(out).replace_extension(part));
-    }
-  }
-  std::erase_if(files, [](const fs::path& file) { return !fs::exists(file); });
-  return files;
-}
-
 void print_repair(const RepairReport& report) {
   if (report.flipped_tets > 0) fmt::print("  turned     {} tets\n", report.flipped_tets);
   if (report.dropped_nodes > 0) {
@@ -98,13 +88,10 @@ void print_repair(const RepairReport& report) {
 void convert(const ConvertArguments& a) {
   const std::string ending = io::lower_extension(a.out);
   const io::WriteOptions options = write_options(ending, a.format);
-  const std::vector<fs::path> existing = existing_outputs(a.out, ending);
-  if (!existing.empty() && !a.force) {
-    throw Error(ErrorKind::usage, "the file exists already", "add --force to replace it",
-                {existing.front().string()});
-  }
+  if (!a.force) refuse_existing(a.out);
 
-  TetMesh mesh = io::read_mesh(a.in);
+  io::ReadNotes notes;
+  TetMesh mesh = io::read_mesh(a.in, a.labels, &notes);
   for (Vec3& x : mesh.nodes) x *= a.scale;
   RepairReport repaired;
   if (a.repair) repaired = repair(mesh, a.in);
@@ -114,6 +101,7 @@ void convert(const ConvertArguments& a) {
   fmt::print("  wrote      {} nodes, {} tets, {} labelled faces\n", mesh.node_count(),
              mesh.tet_count(), mesh.faces.size());
   print_repair(repaired);
+  for (const std::string& remark : notes.remarks) fmt::print("  note       {}\n", remark);
   if (ending == ".msh" && !mesh.node_label.empty()) {
     fmt::print("  lost       the labels of the nodes: Gmsh files have no place for them\n");
   }
@@ -134,8 +122,9 @@ void add_convert(CLI::App& app) {
   command->add_option("in", a->in, "Mesh file to read")->required();
   command->add_option("out", a->out, "Mesh file to write")->required();
   add_scale_option(*command, a->scale);
+  add_label_options(*command, a->labels);
   command->add_flag("--repair", a->repair,
-                    "Turn inverted tets, drop unreferenced nodes; refuse what cannot be repaired");
+                    "Turn inverted tets, drop unreferenced nodes; sinew repair mends more");
   command->add_option("--format", a->format, "Variant of the format, see below");
   command->add_flag("--force", a->force, "Replace existing files");
   command->footer(convert_footer);

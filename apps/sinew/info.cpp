@@ -1,5 +1,6 @@
 // sinew info: diagnosis of a mesh.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdio>
@@ -7,8 +8,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "commands.h"
+#include "label_options.h"
 #include "scale_option.h"
 #include "sinew/base/error.h"
 #include "sinew/io/mesh_io.h"
@@ -33,6 +37,7 @@ Examples:
 
 struct InfoArguments {
   std::string mesh;
+  io::LabelNames labels;
   double scale = 1;
   bool json = false;
 };
@@ -56,6 +61,7 @@ struct Report {
   Index tets = 0;
   std::size_t faces = 0;
   Diagnosis diagnosis;
+  io::ReadNotes notes;
   std::optional<Measures> measures;
 };
 
@@ -76,10 +82,12 @@ Measures measure(TetMesh mesh, double scale) {
 }
 
 Report examine(const InfoArguments& a) {
-  TetMesh mesh = io::read_mesh(a.mesh);
+  io::ReadNotes notes;
+  TetMesh mesh = io::read_mesh(a.mesh, a.labels, &notes);
   for (Vec3& x : mesh.nodes) x *= a.scale;
-  Report report{a.mesh,         a.scale,     mesh.node_count(), mesh.tet_count(), mesh.faces.size(),
-                diagnose(mesh), std::nullopt};
+  Report report{a.mesh,           a.scale,           mesh.node_count(),
+                mesh.tet_count(), mesh.faces.size(), diagnose(mesh),
+                std::move(notes), std::nullopt};
   const bool measurable = !report.diagnosis.find(ProblemKind::empty) &&
                           !report.diagnosis.find(ProblemKind::bad_node_id) &&
                           !report.diagnosis.find(ProblemKind::non_finite);
@@ -94,6 +102,17 @@ nlohmann::ordered_json to_json(const Report& report) {
               {"nodes", report.nodes},
               {"tets", report.tets},
               {"faces", report.faces}};
+  const auto source = [](const std::string& text) { return text.empty() ? json() : json(text); };
+  const io::ReadNotes& notes = report.notes;
+  out["labels"] = {{"tets", source(notes.tet_labels)}, {"nodes", source(notes.node_labels)}};
+  out["arrays"] = json::array();
+  for (const io::MeshArray& array : notes.arrays) {
+    out["arrays"].push_back({{"name", array.name},
+                             {"of", array.of_cells ? "cells" : "points"},
+                             {"holds", io::name(array.kind)},
+                             {"labels", array.used}});
+  }
+  out["remarks"] = notes.remarks;
   for (const char* key :
        {"edges", "components", "box", "volume", "regions", "edge_length", "tet_volume",
         "dihedral_angle", "radius_ratio", "surface", "size_warning"}) {
@@ -126,10 +145,13 @@ nlohmann::ordered_json to_json(const Report& report) {
   for (const Problem& p : report.diagnosis.problems) {
     json first = json::array();
     for (const auto& ids : p.first) first.push_back(ids.size() == 1 ? json(ids[0]) : json(ids));
+    json places = json::array();
+    for (const Vec3& place : p.places) places.push_back(report::to_json(place));
     out["problems"].push_back({{"kind", name(p.kind)},
                                {"severity", name(p.severity)},
                                {"count", p.count},
                                {"first", first},
+                               {"places", places},
                                {"text", p.text},
                                {"remedy", p.remedy}});
   }
@@ -193,6 +215,12 @@ void print_problems(const Report& report) {
   if (report.diagnosis.problems.empty() && !odd_size) fmt::print("  none\n");
   for (const Problem& p : report.diagnosis.problems) {
     fmt::print("  {:<12}{}\n", name(p.severity), p.text);
+    if (!p.places.empty() && p.kind != ProblemKind::inverted_all) {
+      std::vector<std::string> places;
+      for (const Vec3& x : p.places)
+        places.push_back(fmt::format("({:.4g}, {:.4g}, {:.4g})", x.x(), x.y(), x.z()));
+      fmt::print("  {:<12}at {} m\n", "", fmt::join(places, ", "));
+    }
     if (p.severity == Severity::repairable) {
       fmt::print(
           "  {:<12}remedy: none needed; scenes repair it, sinew convert --repair writes it\n", "");
@@ -203,12 +231,31 @@ void print_problems(const Report& report) {
   if (odd_size) fmt::print("  {:<12}{}\n", "warning", *report.measures->size_warning);
 }
 
+// Where the labels come from, and the arrays that are not used.
+void print_notes(const io::ReadNotes& notes) {
+  fmt::print("  {:<10}{}\n", "labels",
+             notes.tet_labels.empty() ? "none: every tet has label 0" : notes.tet_labels);
+  if (!notes.node_labels.empty()) fmt::print("  {:<10}{} (of nodes)\n", "", notes.node_labels);
+  std::string unused;
+  for (const io::MeshArray& array : notes.arrays) {
+    if (array.used) continue;
+    unused += fmt::format("{}{} array \"{}\" ({})", unused.empty() ? "" : ", ",
+                          array.of_cells ? "cell" : "point", array.name, io::name(array.kind));
+  }
+  if (!unused.empty()) fmt::print("  {:<10}{}\n", "not used", unused);
+  if (!io::unused_cell_arrays(notes).empty()) {
+    fmt::print("  {:<10}labels = \"NAME\" of a body takes another array, here --labels NAME\n", "");
+  }
+  for (const std::string& remark : notes.remarks) fmt::print("  {:<10}{}\n", "note", remark);
+}
+
 void print_text(const Report& report) {
   fmt::print("{}\n", report.file);
   fmt::print("  {:<10}{} nodes, {} tets, {} labelled faces", "mesh", report.nodes, report.tets,
              report.faces);
   if (report.measures) fmt::print(", {} edges", report.measures->edges);
   fmt::print("\n");
+  print_notes(report.notes);
   if (report.measures) print_measures(*report.measures);
   print_problems(report);
 }
@@ -237,6 +284,7 @@ void add_info(CLI::App& app) {
   auto a = std::make_shared<InfoArguments>();
   command->add_option("mesh", a->mesh, "Mesh file")->required();
   add_scale_option(*command, a->scale);
+  add_label_options(*command, a->labels);
   command->add_flag("--json", a->json, "Print JSON instead of text");
   command->footer(info_footer);
   command->callback([a] { info(*a); });

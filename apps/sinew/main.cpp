@@ -25,6 +25,7 @@ Examples:
   sinew view scenes/liver.toml --open
   sinew info scenes/meshes/liver-10mm.mesh
   sinew convert liver.mesh liver.vtu
+  sinew repair heart.msh heart-sound.msh
   sinew materials liver)";
 
 constexpr int io_failed = static_cast<int>(sinew::ErrorKind::io);
@@ -60,6 +61,7 @@ int run(int argc, char** argv, int& output_failure) {
   add_view(app, status);
   add_info(app);
   add_convert(app);
+  add_repair(app);
   add_materials(app);
   add_identify(app);
   add_validate(app, status);

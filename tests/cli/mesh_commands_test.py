@@ -1,10 +1,11 @@
-"""sinew info and sinew convert."""
+"""sinew info, sinew convert and sinew repair."""
 
 import json
 import unittest
 
-from cli_support import INPUT, IO, SCENES, USAGE, CliTest
+from cli_support import INPUT, IO, ROOT, SCENES, USAGE, CliTest
 
+DATA = ROOT / "tests" / "data" / "meshes"
 LIVER = SCENES / "meshes" / "liver-10mm.mesh"
 
 # Two tets on one face in region 5; node 5 is unreferenced; the first tet is inverted.
@@ -143,8 +144,38 @@ class InfoTest(CliTest):
             run = self.run_sinew("info", LIVER, "--scale", scale, code=USAGE)
             self.assertIn(f'"{scale}" is not a number above 0', run.stderr)
 
+    def test_where_labels_come_from(self):
+        mesh = DATA / "labels" / "tissue.vtk"
+        out = self.run_sinew("info", mesh).stdout
+        self.assertIn('labels    cell array "tissue"', out)
+        self.assertEqual([r["label"] for r in self.info(mesh)["regions"]], [1, 2])
+        mesh = DATA / "labels" / "point-fractions.vtk"
+        out = self.run_sinew("info", mesh).stdout
+        self.assertIn('not used  point array "material" (numbers)', out)
+        self.assertEqual(self.info(mesh)["arrays"][0]["of"], "points")
+        run = self.run_sinew("info", mesh, "--labels", "tissue", code=INPUT)
+        self.assertIn('has no cell array "tissue"', run.stderr)
+
+    def test_near_flat_tets_and_double_nodes_have_places(self):
+        problems = {p["kind"]: p for p in self.info(DATA / "repair" / "tiny-node.vtu")["problems"]}
+        self.assertIn("radius ratio 6.5e-08", problems["near_flat"]["text"])
+        self.assertEqual(len(problems["near_flat"]["places"][0]), 3)
+        out = self.run_sinew("info", DATA / "repair" / "double.vtu").stdout
+        self.assertIn("duplicate nodes", out)
+        self.assertRegex(out, r"unconnected parts \(0, \d+\): of \d+, \d+ tets")
+        self.assertIn("at (", out)
+
+    def test_surfaces_and_images_are_named(self):
+        for command in (["info"], ["view", "--port", "0"], ["run"],
+                        ["identify", "--young", "1e4", "--poisson", "0.3"]):
+            run = self.run_sinew(*command, "x.stl", code=INPUT)
+            self.assertIn("x.stl: is a surface (.stl), not a mesh of tetrahedra", run.stderr)
+            self.assertIn("sinew-mesh x.stl -o x.vtu", run.stderr)
+        run = self.run_sinew("run", "x.vtu", code=INPUT)
+        self.assertIn("x.vtu: is a mesh, not a scene", run.stderr)
+
     def test_help_has_examples(self):
-        for command in ["info", "convert"]:
+        for command in ["info", "convert", "repair"]:
             self.assertIn(f"  sinew {command} ", self.run_sinew(command, "--help").stdout)
 
     def test_a_name_that_is_not_text(self):
@@ -237,6 +268,37 @@ class ConvertTest(CliTest):
         self.run_sinew("convert", mesh, "no/such/folder/a.vtu", code=IO)
         self.run_sinew("convert", mesh, code=USAGE)
         self.assertEqual([p.name for p in self.dir.iterdir()], ["faulty.mesh"])
+
+
+class RepairTest(CliTest):
+    def problems(self, mesh):
+        return json.loads(self.run_sinew("info", mesh, "--json").stdout)["problems"]
+
+    def test_double_nodes_and_flat_tets(self):
+        for name, done in [("double", "double nodes joined"), ("tiny-node", "short edge")]:
+            mesh = DATA / "repair" / f"{name}.vtu"
+            self.assertNotEqual(self.problems(mesh), [])
+            out = self.run_sinew("repair", mesh, f"{name}.vtu").stdout
+            self.assertIn(done, out)
+            self.assertEqual(self.problems(f"{name}.vtu"), [])
+
+    def test_a_sound_mesh(self):
+        self.run_sinew("repair", DATA / "repair" / "double.vtu", "a.vtu")
+        self.assertIn("nothing to repair", self.run_sinew("repair", "a.vtu", "b.mesh").stdout)
+
+    def test_nothing_of_the_user_is_replaced(self):
+        mesh = self.write("faulty.mesh", FAULTY)
+        self.write("out.vtu", "mine")
+        run = self.run_sinew("repair", mesh, "out.vtu", code=USAGE)
+        self.assertIn("out.vtu: the file exists already", run.stderr)
+        run = self.run_sinew("repair", mesh, mesh, "--force", code=USAGE)
+        self.assertIn("would replace the file that it is made from", run.stderr)
+
+    def test_copies_of_tets_are_removed(self):
+        mesh = self.write("hopeless.mesh", HOPELESS)
+        out = self.run_sinew("repair", mesh, "out.mesh").stdout
+        self.assertIn("1 tet removed that repeated a node or an earlier tet", out)
+        self.assertIn("1 flat tet removed at the surface", out)
 
 
 if __name__ == "__main__":

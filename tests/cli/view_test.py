@@ -43,6 +43,11 @@ class ViewTest(CliTest):
             self.assertIn("beam", names)
             self.assertIn("liver", names)
 
+    def test_a_mesh_by_its_bare_name(self):
+        self.run_sinew("convert", SCENES / "meshes" / "liver-10mm.mesh", "liver.msh")
+        with self.view("liver.msh", "--quiet") as url:
+            self.assertIn('mesh = "liver.msh"', self.get(url, "scene.toml"))
+
     def test_another_gallery(self):
         scene = self.write("own/mine.toml", '[body.a]\nshape = "box"\n[pin.p]\nselect = {side="+y"}\n')
         self.write("own/broken.toml", "[")

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <set>
 
 #include "sinew/base/error.h"
 #include "sinew/io/file_io.h"
@@ -206,18 +207,16 @@ TEST_F(MeshIo, FilesThatAreNotThere) {
 }
 
 TEST_F(MeshIo, UnknownEndings) {
-  EXPECT_EQ(error_of("liver.inp"),
-            "liver.inp: has the unknown ending \".inp\"\n  remedy: known endings: .mesh .msh .node "
+  EXPECT_EQ(error_of("liver.abc"),
+            "liver.abc: has the unknown ending \".abc\"\n  remedy: known endings: .mesh .msh .node "
             ".ele .vtk .vtu");
-  EXPECT_EQ(
-      error_of("liver.stl"),
-      "liver.stl: has the unknown ending \".stl\"\n  remedy: this is a surface format: fill it "
-      "with tetrahedra first (sinew-mesh, TetGen, Gmsh); known endings: .mesh .msh .node .ele "
-      ".vtk .vtu");
-  EXPECT_EQ(
-      error_of("liver.meshb"),
-      "liver.meshb: has the unknown ending \".meshb\"\n  remedy: convert the binary MEDIT file "
-      "to text (.mesh) first, for example with medit or Gmsh");
+  EXPECT_EQ(error_of("liver.stl"),
+            "liver.stl: is a surface (.stl), not a mesh of tetrahedra\n  remedy: fill it with "
+            "tetrahedra: sinew-mesh liver.stl -o liver.vtu; a body of a scene does that by itself: "
+            "mesh = \"liver.stl\"");
+  EXPECT_EQ(error_of("liver.meshb"),
+            "liver.meshb: is a binary MEDIT file (.meshb), a format that Sinew does not read\n  "
+            "remedy: convert it: meshio convert liver.meshb liver.vtu (pip install meshio)");
   EXPECT_THROW(write_mesh(folder_ / "a.inp", two_tets()), Error);
   EXPECT_EQ(files(), 0U);
 }
@@ -238,6 +237,84 @@ TEST_F(MeshIo, TetgenWithoutFacesRemovesAnOldFaceFile) {
   write_mesh(folder_ / "a.node", mesh);
   EXPECT_EQ(files(), 2U);
   expect_same_mesh(read_mesh(folder_ / "a.ele"), mesh, true);
+}
+
+TEST(Gmsh, TheFirstOfOverlappingGroupsIsTheLabel) {
+  ReadNotes notes;
+  const TetMesh mesh = read_mesh(mesh_data("labels/gmsh22-overlapping.msh"), {}, &notes);
+  EXPECT_EQ(mesh.tet_label, (std::vector<int>{1, 2}));
+  ASSERT_EQ(notes.remarks.size(), 1U);
+  EXPECT_NE(notes.remarks[0].find("2 tets are in several physical groups"), std::string::npos);
+}
+
+TEST(Gmsh, PartsOfAPartitionedMeshHaveTheGroupsOfTheirParent) {
+  const std::string file = mesh_data("labels/gmsh41-partitioned.msh");
+  ReadNotes notes;
+  for (const LabelNames& names :
+       {LabelNames{}, LabelNames{"gmsh:physical", ""}, LabelNames{"gmsh:geometrical", ""}}) {
+    const TetMesh mesh = read_mesh(file, names, &notes);
+    const std::set<int> labels(mesh.tet_label.begin(), mesh.tet_label.end());
+    EXPECT_EQ(labels, (std::set<int>{1, 2}));
+  }
+  EXPECT_EQ(notes.tet_labels, "entities (gmsh:geometrical)");
+}
+
+TEST(Gmsh, ParametricNodesOfVersion2) {
+  std::string text = read_file(mesh_data("labels/gmsh22-overlapping.msh"));
+  const std::size_t at = text.find("$Nodes");
+  text = text.substr(0, at) +
+         "$ParametricNodes\n5\n1 0 0 0 0 1\n2 0.05 0 0 1 4 0.5\n3 0 0.05 0 2 6 0.25 0.75\n"
+         "4 0 0 0.05 3 1\n5 0.05 0.05 0.05 3 1\n$EndParametricNodes\n" +
+         text.substr(text.find("$Elements"));
+  const TetMesh mesh = parse_gmsh(text, "x.msh");
+  EXPECT_EQ(mesh.node_count(), 5);
+  EXPECT_EQ(mesh.nodes[2].y(), 0.05);
+  EXPECT_EQ(mesh.tet_count(), 2);
+}
+
+TEST(Tetgen, AnAttributeWithFractionsIsNoLabel) {
+  ReadNotes notes;
+  const TetMesh mesh = read_mesh(mesh_data("labels/tetgen-region-not-whole.node"), {}, &notes);
+  EXPECT_TRUE(mesh.tet_label.empty());
+  ASSERT_EQ(notes.remarks.size(), 1U);
+  EXPECT_NE(notes.remarks[0].find("it holds 1.5"), std::string::npos);
+}
+
+TEST(Tetgen, QuadraticTetsAreUsedByTheirCorners) {
+  ReadNotes notes;
+  EXPECT_EQ(read_mesh(mesh_data("labels/tetgen-quadratic.node"), {}, &notes).tet_count(), 1);
+  EXPECT_EQ(notes.remarks.size(), 1U);
+}
+
+std::string refusal_of(const std::string& name, const LabelNames& labels = {}) {
+  try {
+    read_mesh(name, labels);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(OtherFormats, SayWhatTheyAreAndHowToConvertThem) {
+  const std::map<std::string, std::vector<std::string>> parts = {
+      {"x.stl", {"a surface (.stl)", "sinew-mesh x.stl -o x.vtu"}},
+      {"x.nii.gz", {"an image", "sinew-mesh x.nii.gz -o x.vtu"}},
+      {"x.vtp", {"a surface (.vtp)", "sinew-mesh x.stl -o x.vtu"}},
+      {"x.nrrd", {"an image (.nrrd)", "NIfTI"}},
+      {"x.inp", {"an Abaqus file (.inp)", "meshio convert x.inp x.vtu"}},
+      {"x.step", {"CAD", "gmsh x.step -3 -o x.msh"}},
+      {"x.abc", {"unknown ending", "known endings: .mesh"}}};
+  for (const auto& [name, words] : parts) {
+    for (const std::string& word : words)
+      EXPECT_NE(refusal_of(name).find(word), std::string::npos) << name << ": " << refusal_of(name);
+  }
+}
+
+TEST(OtherFormats, NamesOfLabelsNeedAFormatThatHasThem) {
+  EXPECT_NE(refusal_of(mesh_data("valid/by-hand.mesh"), {"tissue", ""}).find("is a MEDIT file"),
+            std::string::npos);
+  EXPECT_NE(refusal_of(mesh_data("valid/by-hand-gmsh22.msh"), {"tissue", ""}).find("gmsh:physical"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -29,7 +29,8 @@ Problem only_problem(const TetMesh& mesh) {
   for (std::size_t p = 1; p < diagnosis.problems.size(); ++p) {
     ADD_FAILURE() << "also: " << diagnosis.problems[p].text;
   }
-  if (diagnosis.problems.empty()) return {ProblemKind::empty, Severity::fatal, 0, {}, "none", ""};
+  if (diagnosis.problems.empty())
+    return {ProblemKind::empty, Severity::fatal, 0, {}, {}, "none", ""};
   return diagnosis.problems.front();
 }
 
@@ -175,7 +176,8 @@ TEST(Doctor, DuplicateNodesAndParts) {
             "not be connected");
   EXPECT_EQ(diagnosis.problems[1].kind, ProblemKind::components);
   EXPECT_EQ(diagnosis.problems[1].text,
-            "2 unconnected parts (0, 6): they share no node, so they do not pull at each other; "
+            "2 unconnected parts (0, 6): of 6, 6 tets; they share no node, so they do not pull at "
+            "each other; "
             "the ids are each part's first tet");
 }
 
@@ -255,8 +257,7 @@ TEST(Repair, RefusesWithEveryFatalProblem) {
     EXPECT_STREQ(error.what(),
                  "heart.mesh: the mesh cannot be simulated: 1 tet (2): names the same node twice; "
                  "1 duplicate tet (3): the same four nodes as an earlier tet (ids count from 0)\n"
-                 "  remedy: remove collapsed tets in the mesher; remove duplicate tets in the "
-                 "mesher");
+                 "  remedy: sinew repair IN OUT removes them");
   }
   EXPECT_EQ(mesh.tets, before.tets);
 }

@@ -275,7 +275,7 @@ TEST(Build, MapsLabelsToRegions) {
   EXPECT_EQ(all.bodies[0].laws, "uniform");
   EXPECT_EQ(error_of([&] { build_here("[body.b.region.a]\nlabel = 5\n"); }),
             "scene.toml:5:9: [body.b.region.a] covers label 5, which the mesh does not have\n"
-            "  remedy: its tets have the labels: 4, 7");
+            "  remedy: its tets have the labels: 4, 7 (from the file's references)");
 }
 
 TEST(Build, RepairsAndKeepsTheFilesNodeIds) {

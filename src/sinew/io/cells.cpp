@@ -27,9 +27,9 @@ constexpr Row gmsh_types[] = {
     {6, {"prisms", 6, refuse}},
     {7, {"pyramids", 5, refuse}},
     {8, {"quadratic lines", 3, skip}},
-    {9, {"quadratic triangles", 6, refuse}},
+    {9, {"quadratic triangles", 6, face}},
     {10, {"quadratic quadrilaterals", 9, skip}},
-    {11, {"quadratic tetrahedra", 10, refuse}},
+    {11, {"quadratic tetrahedra", 10, tet}},
     {12, {"quadratic hexahedra", 27, refuse}},
     {13, {"quadratic prisms", 18, refuse}},
     {14, {"quadratic pyramids", 14, refuse}},
@@ -38,18 +38,18 @@ constexpr Row gmsh_types[] = {
     {17, {"quadratic hexahedra", 20, refuse}},
     {18, {"quadratic prisms", 15, refuse}},
     {19, {"quadratic pyramids", 13, refuse}},
-    {20, {"cubic triangles", 9, refuse}},
-    {21, {"cubic triangles", 10, refuse}},
-    {22, {"quartic triangles", 12, refuse}},
-    {23, {"quartic triangles", 15, refuse}},
-    {24, {"quintic triangles", 15, refuse}},
-    {25, {"quintic triangles", 21, refuse}},
+    {20, {"cubic triangles", 9, face}},
+    {21, {"cubic triangles", 10, face}},
+    {22, {"quartic triangles", 12, face}},
+    {23, {"quartic triangles", 15, face}},
+    {24, {"quintic triangles", 15, face}},
+    {25, {"quintic triangles", 21, face}},
     {26, {"cubic lines", 4, skip}},
     {27, {"quartic lines", 5, skip}},
     {28, {"quintic lines", 6, skip}},
-    {29, {"cubic tetrahedra", 20, refuse}},
-    {30, {"quartic tetrahedra", 35, refuse}},
-    {31, {"quintic tetrahedra", 56, refuse}},
+    {29, {"cubic tetrahedra", 20, tet}},
+    {30, {"quartic tetrahedra", 35, tet}},
+    {31, {"quintic tetrahedra", 56, tet}},
     {92, {"cubic hexahedra", 64, refuse}},
     {93, {"quartic hexahedra", 125, refuse}},
 };
@@ -73,9 +73,9 @@ constexpr Row vtk_types[] = {
     {15, {"pentagonal prisms", 10, refuse}},
     {16, {"hexagonal prisms", 12, refuse}},
     {21, {"quadratic lines", 3, skip}},
-    {22, {"quadratic triangles", 6, refuse}},
+    {22, {"quadratic triangles", 6, face}},
     {23, {"quadratic quadrilaterals", 8, skip}},
-    {24, {"quadratic tetrahedra", 10, refuse}},
+    {24, {"quadratic tetrahedra", 10, tet}},
     {25, {"quadratic hexahedra", 20, refuse}},
     {26, {"quadratic prisms", 15, refuse}},
     {27, {"quadratic pyramids", 13, refuse}},
@@ -83,9 +83,9 @@ constexpr Row vtk_types[] = {
     {29, {"quadratic hexahedra", 27, refuse}},
     {42, {"polyhedra", 0, refuse}},
     {68, {"Lagrange lines", 0, skip}},
-    {69, {"Lagrange triangles", 0, refuse}},
+    {69, {"Lagrange triangles", 0, face}},
     {70, {"Lagrange quadrilaterals", 0, skip}},
-    {71, {"Lagrange tetrahedra", 0, refuse}},
+    {71, {"Lagrange tetrahedra", 0, tet}},
     {72, {"Lagrange hexahedra", 0, refuse}},
 };
 
@@ -112,11 +112,23 @@ void RefusedCells::check(const std::string& file) const {
   for (const auto& [name, count] : counts_) {
     list += fmt::format("{}{} ({})", list.empty() ? "" : ", ", name, count);
   }
-  throw Error(ErrorKind::input, fmt::format("holds cells that are not linear tetrahedra: {}", list),
-              "mesh the volume with linear tetrahedra only (in Gmsh: element order 1, no "
-              "recombination), or split these cells into tetrahedra before (in ParaView: filter "
+  throw Error(ErrorKind::input, fmt::format("holds cells that are not tetrahedra: {}", list),
+              "mesh the volume with tetrahedra only (in Gmsh: without recombination), or split "
+              "these cells into tetrahedra before (in ParaView: filter "
               "Tetrahedralize)",
               {file, 0, 0});
+}
+
+void CornerCells::remark(ReadNotes& notes) const {
+  if (counts_.empty()) return;
+  std::string list;
+  for (const auto& [name, count] : counts_) {
+    list += fmt::format("{}{} {}", list.empty() ? "" : " and ", count, name);
+  }
+  notes.remarks.push_back(
+      list +
+      " are used by their corners: nodes between corners are left out, curved edges become "
+      "straight");
 }
 
 void require_tets(const TetMesh& mesh, const std::string& file) {
@@ -125,11 +137,12 @@ void require_tets(const TetMesh& mesh, const std::string& file) {
     throw Error(ErrorKind::input, "holds no tetrahedra",
                 "export the volume mesh, not only its points", {file, 0, 0});
   }
-  throw Error(ErrorKind::input,
-              fmt::format("holds no tetrahedra, only triangles ({})", mesh.faces.size()),
-              "fill the surface with tetrahedra first (sinew-mesh, TetGen, Gmsh), or export the "
-              "volume mesh",
-              {file, 0, 0});
+  throw Error(
+      ErrorKind::input,
+      fmt::format("is a surface: it holds no tetrahedra, only triangles ({})", mesh.faces.size()),
+      "export the volume mesh, or save the surface as STL and fill it: sinew-mesh NAME.stl -o "
+      "NAME.vtu",
+      {file, 0, 0});
 }
 
 void require_indexable(std::size_t count, std::string_view what, const std::string& file) {

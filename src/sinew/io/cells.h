@@ -7,15 +7,16 @@
 #include <string>
 #include <string_view>
 
+#include "sinew/io/mesh_notes.h"
 #include "sinew/mesh/tet_mesh.h"
 
 namespace sinew::io {
 
 enum class CellUse {
-  tet,
-  face,    // a triangle, kept with its label
+  tet,     // a tetrahedron; of a higher order: its corners, which come first
+  face,    // a triangle, kept with its label; of a higher order: its corners
   skip,    // points, lines, quadrilaterals: not part of a tetrahedral mesh
-  refuse,  // a volume cell or curved cell that would leave a hole if it were skipped
+  refuse,  // a volume cell that would leave a hole if it were skipped
 };
 
 struct CellType {
@@ -33,6 +34,17 @@ class RefusedCells {
   void add(std::string_view name, std::size_t count = 1) { counts_[std::string(name)] += count; }
   // Error if there are any.
   void check(const std::string& file) const;
+
+ private:
+  std::map<std::string, std::size_t> counts_;
+};
+
+// Counts the tetrahedra and triangles of a higher order, which are used by their corners.
+class CornerCells {
+ public:
+  void add(std::string_view name) { ++counts_[std::string(name)]; }
+  // A remark that names them, if there are any.
+  void remark(ReadNotes& notes) const;
 
  private:
   std::map<std::string, std::size_t> counts_;

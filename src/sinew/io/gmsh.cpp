@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <limits>
 
 #include "sinew/io/gmsh_parts.h"
@@ -102,16 +103,93 @@ Index GmshFile::node(std::int64_t id, std::string_view kind, std::int64_t elemen
             "correct the id, or add the missing node to $Nodes");
 }
 
+GmshLabels::GmshLabels(const LabelNames& asked, const std::string& file) {
+  if (!asked.nodes.empty()) {
+    throw Error(ErrorKind::input, "is a Gmsh file, which has no labels of nodes",
+                "leave node_labels out", {file, 0, 0});
+  }
+  if (asked.tets == "gmsh:physical" || asked.tets == "physical") {
+    source_ = Source::physical;
+  } else if (asked.tets == "gmsh:geometrical" || asked.tets == "geometrical") {
+    source_ = Source::entity;
+  } else if (!asked.tets.empty()) {
+    throw Error(ErrorKind::input,
+                fmt::format("is a Gmsh file, which has no array \"{}\"", asked.tets),
+                "its labels are \"gmsh:physical\" (groups) and \"gmsh:geometrical\" (entities)",
+                {file, 0, 0});
+  }
+}
+
+int GmshLabels::label(GmshTags tags) {
+  (tags.physical != 0 ? grouped_ : ungrouped_) = true;
+  switch (source_) {
+    case Source::both:
+      return tags.physical != 0 ? tags.physical : tags.entity;
+    case Source::physical:
+      return tags.physical;
+    case Source::entity:
+      return tags.entity;
+  }
+  return 0;
+}
+
+void GmshLabels::describe(ReadNotes& notes) const {
+  if (source_ == Source::entity || (source_ == Source::both && !grouped_)) {
+    notes.tet_labels = "entities (gmsh:geometrical)";
+    return;
+  }
+  notes.tet_labels = "physical groups (gmsh:physical)";
+  if (source_ == Source::both && ungrouped_) notes.tet_labels += ", entities of cells in none";
+}
+
+void GmshFile::merge_groups() {
+  std::vector<std::pair<Tet, std::size_t>> keys;
+  for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
+    Tet key = mesh.tets[i];
+    std::sort(key.begin(), key.end());
+    keys.emplace_back(key, i);
+  }
+  std::sort(keys.begin(), keys.end());
+  std::vector<char> dropped(mesh.tets.size(), 0);
+  for (std::size_t first = 0, k = 1; k < keys.size(); ++k) {
+    if (keys[k].first != keys[first].first) {
+      first = k;
+    } else if (tet_group[keys[k].second] != tet_group[keys[first].second]) {
+      dropped[keys[k].second] = 1;
+    }
+  }
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < mesh.tets.size(); ++i) {
+    if (dropped[i] != 0) continue;
+    mesh.tets[kept] = mesh.tets[i];
+    mesh.tet_label[kept++] = mesh.tet_label[i];
+  }
+  const std::size_t merged = mesh.tets.size() - kept;
+  mesh.tets.resize(kept);
+  mesh.tet_label.resize(kept);
+  if (merged == 0) return;
+  notes.remarks.push_back(
+      fmt::format("{} tet{} in several physical groups; the first group in the file is the label",
+                  merged, merged == 1 ? " is" : "s are"));
+}
+
 namespace {
 
 enum class Format { msh2, msh41 };
+
+// Under another name: the user's file stays.
+std::string save_again(const TextReader& text) {
+  const std::filesystem::path path = text.file();
+  return fmt::format("save it again under another name: gmsh {} -save -format msh41 -o {}-41.msh",
+                     path.filename().string(), path.stem().string());
+}
 
 // Reads $MeshFormat ... $EndMeshFormat: version, text or binary, sizes and byte order.
 Format read_header(GmshFile& file) {
   TextReader& text = file.text;
   const std::string_view first = text.word({"$MeshFormat"});
   if (first == "$NOD") {
-    text.fail("is a Gmsh file of version 1", "save it again with: gmsh FILE -save -format msh41");
+    text.fail("is a Gmsh file of version 1", save_again(text));
   }
   if (first != "$MeshFormat") {
     text.fail(fmt::format("expected $MeshFormat, found {}", quoted(first)),
@@ -122,7 +200,7 @@ Format read_header(GmshFile& file) {
   if (!is_4_1 && version != "2" && version != "2.0" && version != "2.1" && version != "2.2") {
     text.fail(
         fmt::format("the version of the format is {}; 2.2 and 4.1 can be read", quoted(version)),
-        "save it again with: gmsh FILE -save -format msh41");
+        save_again(text));
   }
   const bool binary =
       text.integer({"the file type after the version (0 is ASCII, 1 is binary)"}, 0, 1) == 1;
@@ -158,9 +236,11 @@ void skip_section(TextReader& text, std::string_view section) {
 
 }  // namespace
 
-TetMesh parse_gmsh(std::string_view bytes, const std::string& name) {
+TetMesh parse_gmsh(std::string_view bytes, const std::string& name, const LabelNames& labels,
+                   ReadNotes* notes) {
   TextReader text(bytes, name, 0);
-  GmshFile file(text);
+  ReadNotes unread;
+  GmshFile file(text, labels, notes == nullptr ? unread : *notes);
   const Format format = read_header(file);
   Gmsh41Sections sections41;
   while (!text.at_end()) {
@@ -172,10 +252,6 @@ TetMesh parse_gmsh(std::string_view bytes, const std::string& name) {
                 "two sections must go");
     }
     section.remove_prefix(1);
-    if (section == "ParametricNodes") {
-      text.fail("$ParametricNodes cannot be read",
-                "save the mesh again without Mesh.SaveParametric, or as version 4.1");
-    }
     const bool known = format == Format::msh41 ? sections41.read(file, section)
                                                : read_gmsh22_section(file, section);
     if (known) {
@@ -191,6 +267,10 @@ TetMesh parse_gmsh(std::string_view bytes, const std::string& name) {
         "save");
   }
   file.refused.check(name);
+  file.quadratic.remark(file.notes);
+  if (format == Format::msh2) file.merge_groups();
+  if (format == Format::msh41) sections41.remark(file.notes);
+  file.labels.describe(file.notes);
   require_tets(file.mesh, name);
   return std::move(file.mesh);
 }

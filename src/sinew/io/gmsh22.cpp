@@ -9,10 +9,13 @@ namespace {
 
 constexpr std::string_view element_layout = "id type number-of-tags tags... nodes...";
 
-void read_nodes(GmshFile& file) {
+// parametric: Gmsh with Mesh.SaveParametric adds the dimension and tag of the entity that the node
+// lies on, and its parameters there: one on a curve, two on a surface.
+void read_nodes(GmshFile& file, bool parametric) {
   file.start_nodes();
   TextReader& text = file.text;
-  text.set_part("a line of $Nodes", "id x y z");
+  text.set_part(parametric ? "a line of $ParametricNodes" : "a line of $Nodes",
+                parametric ? "id x y z dimension entity parameters..." : "id x y z");
   const Wanted wanted{"the number of nodes"};
   const std::int64_t count = text.integer(wanted, 0, std::numeric_limits<std::int64_t>::max());
   if (file.values.binary()) text.end_line(wanted);
@@ -25,25 +28,33 @@ void read_nodes(GmshFile& file) {
     const double y = file.values.value<double>({"y", "node", i});
     const double z = file.values.value<double>({"z", "node", i});
     file.mesh.nodes.emplace_back(x, y, z);
+    if (!parametric) continue;
+    const int dimension = file.values.value<std::int32_t>({"dimension", "node", i});
+    file.values.value<std::int32_t>({"entity", "node", i});
+    if (!file.values.binary()) {
+      text.line_rest();
+      continue;
+    }
+    const int parameters = dimension == 1 || dimension == 2 ? dimension : 0;
+    for (int k = 0; k < parameters; ++k) file.values.value<double>({"a parameter", "node", i});
   }
   file.finish_nodes();
 }
 
 // The tags of one element: physical group, elementary entity, then partitions.
-int read_label(GmshFile& file, std::int64_t tags, std::int64_t element) {
-  int physical = 0;
-  int elementary = 0;
+GmshTags read_tags(GmshFile& file, std::int64_t tags, std::int64_t element) {
+  GmshTags found;
   for (std::int64_t i = 0; i < tags; ++i) {
     const int tag = file.values.value<std::int32_t>({"a tag", "element", element});
-    if (i == 0) physical = tag;
-    if (i == 1) elementary = tag;
+    if (i == 0) found.physical = tag;
+    if (i == 1) found.entity = tag;
   }
-  return physical != 0 ? physical : elementary;
+  return found;
 }
 
 void read_element(GmshFile& file, const CellType& type, std::int64_t tags, std::int64_t id) {
-  const int label = read_label(file, tags, id);
-  file.element(type, id, label, [&] {
+  const GmshTags found = read_tags(file, tags, id);
+  file.element(type, id, found, [&] {
     return std::int64_t{file.values.value<std::int32_t>({"a node", "element", id})};
   });
 }
@@ -89,8 +100,8 @@ void read_elements(GmshFile& file) {
 }  // namespace
 
 bool read_gmsh22_section(GmshFile& file, std::string_view section) {
-  if (section == "Nodes") {
-    read_nodes(file);
+  if (section == "Nodes" || section == "ParametricNodes") {
+    read_nodes(file, section == "ParametricNodes");
   } else if (section == "Elements") {
     read_elements(file);
   } else {

@@ -29,9 +29,30 @@ class NodeIds {
   std::vector<std::pair<std::int64_t, Index>> sorted_;  // empty if the ids have no gaps
 };
 
+// The tags of a cell. 0: none.
+struct GmshTags {
+  int physical = 0;
+  int entity = 0;
+};
+
+// The choice of the labels, and what it found.
+class GmshLabels {
+ public:
+  // Error (input) for another name than gmsh:physical and gmsh:geometrical.
+  GmshLabels(const LabelNames& asked, const std::string& file);
+  int label(GmshTags tags);
+  void describe(ReadNotes& notes) const;
+
+ private:
+  enum class Source { both, physical, entity };
+  Source source_ = Source::both;
+  bool grouped_ = false, ungrouped_ = false;  // some cells are in a group, some in none
+};
+
 // A .msh file after its header: its sections, its numbers, and the mesh read so far.
 struct GmshFile {
-  explicit GmshFile(TextReader& reader) : text(reader), values(reader) {}
+  GmshFile(TextReader& reader, const LabelNames& asked, ReadNotes& file_notes)
+      : text(reader), values(reader), labels(asked, reader.file()), notes(file_notes) {}
 
   TextReader& text;
   ValueReader values;
@@ -40,6 +61,10 @@ struct GmshFile {
   bool has_nodes = false;
   TetMesh mesh;
   RefusedCells refused;
+  CornerCells quadratic;
+  GmshLabels labels;
+  ReadNotes& notes;
+  std::vector<int> tet_group;  // physical tag (tets)
 
   std::int64_t size(const Wanted& wanted);  // a size_t
   void expect_end(std::string_view section);
@@ -49,8 +74,11 @@ struct GmshFile {
   CellType cell_type(int type, const Wanted& wanted);
   // Reads the nodes of one element and keeps it if it is a tet or a face.
   template <typename ReadId>
-  void element(const CellType& type, std::int64_t id, int label, ReadId read_id);
+  void element(const CellType& type, std::int64_t id, GmshTags tags, ReadId read_id);
   Index node(std::int64_t id, std::string_view kind, std::int64_t element);
+  // Gmsh 2 lists a tet once for each of its groups: the first stays. (Faces keep all labels: the
+  // two sides of an interface may have different ones.)
+  void merge_groups();
 };
 
 // The sections $Nodes, $Elements (and $Entities) of each version; false for other sections.
@@ -59,31 +87,46 @@ bool read_gmsh22_section(GmshFile& file, std::string_view section);
 class Gmsh41Sections {
  public:
   bool read(GmshFile& file, std::string_view section);
+  // Says which entities are in several groups.
+  void remark(ReadNotes& notes) const;
 
  private:
-  void entities(GmshFile& file);
+  void entities(GmshFile& file, bool partitioned);
   void nodes(GmshFile& file);
   void elements(GmshFile& file);
 
-  std::map<std::pair<int, int>, int> physical_;  // (dimension, entity tag) -> physical tag
+  struct Entity {
+    GmshTags tags;  // of an entity of a partitioned mesh: those of its parent
+    int groups = 0;
+  };
+  void parent(GmshFile& file, std::string_view kind, int dimension, int tag, Entity& entity);
+  void physical_tags(GmshFile& file, std::string_view kind, int tag, Entity& entity);
+
+  std::map<std::pair<int, int>, Entity> entities_;  // by dimension and tag
 };
 
 template <typename ReadId>
-void GmshFile::element(const CellType& type, std::int64_t id, int label, ReadId read_id) {
+void GmshFile::element(const CellType& type, std::int64_t id, GmshTags tags, ReadId read_id) {
+  int left = type.nodes;  // after the corners
+
   if (type.use == CellUse::tet) {
     Tet tet{};
     for (Index& corner : tet) corner = node(read_id(), "tetrahedron", id);
     mesh.tets.push_back(tet);
-    mesh.tet_label.push_back(label);
+    mesh.tet_label.push_back(labels.label(tags));
+    tet_group.push_back(tags.physical);
+    left -= 4;
   } else if (type.use == CellUse::face) {
     Triangle face{};
     for (Index& corner : face) corner = node(read_id(), "triangle", id);
     mesh.faces.push_back(face);
-    mesh.face_label.push_back(label);
-  } else {
-    for (int i = 0; i < type.nodes; ++i) read_id();
-    if (type.use == CellUse::refuse) refused.add(type.name);
+    mesh.face_label.push_back(labels.label(tags));
+    left -= 3;
+  } else if (type.use == CellUse::refuse) {
+    refused.add(type.name);
   }
+  if (left > 0 && (type.use == CellUse::tet || type.use == CellUse::face)) quadratic.add(type.name);
+  for (; left > 0; --left) read_id();
 }
 
 }  // namespace sinew::io

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sinew/io/gmsh.h"
+#include "sinew/io/mesh_notes.h"
 #include "sinew/io/vtu.h"
 #include "sinew/mesh/tet_mesh.h"
 
@@ -16,7 +17,11 @@ namespace sinew::io {
 // Indices are in range afterwards; the geometry is not checked (mesh/doctor.h does that).
 // Error (input) names the file, the line, the fault and the remedy; Error (io) the refusal of the
 // system.
-TetMesh read_mesh(const std::filesystem::path& path);
+//
+// labels: the arrays or groups that the labels come from; Error (input) if the file has no such
+// thing. Adds to `notes` if given.
+TetMesh read_mesh(const std::filesystem::path& path, const LabelNames& labels = {},
+                  ReadNotes* notes = nullptr);
 
 struct WriteOptions {
   bool binary = false;  // Gmsh and legacy VTK: bytes instead of text
@@ -33,6 +38,11 @@ void write_mesh(const std::filesystem::path& path, const TetMesh& mesh,
 
 // The extensions that can be read and written, for messages: {".mesh", ...}.
 const std::vector<std::string>& mesh_endings();
+
+// Error (input) that names what the file is and the remedy, for a file whose extension says that it
+// holds no tetrahedra that can be read: a surface, an image, a format that another program
+// converts. Returns for other extensions.
+void refuse_other_format(const std::filesystem::path& path);
 
 // Whether the name has one of these extensions, case ignored.
 bool is_mesh_name(const std::filesystem::path& path);

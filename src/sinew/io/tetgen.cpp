@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "sinew/io/cells.h"
@@ -80,18 +81,31 @@ std::int64_t optional_count(LineFile& file, std::string_view value, std::int64_t
   return file.reader().integer({value}, 0, most);
 }
 
-// The last attribute, a whole number that TetGen writes as a double.
-int region(LineFile& file, std::string_view value) {
-  const double found = file.real(value);
-  if (found == std::floor(found) && found >= std::numeric_limits<int>::min() &&
-      found <= std::numeric_limits<int>::max()) {
-    return static_cast<int>(found);
+// The last attribute is the region, a whole number that TetGen writes as a double. An attribute
+// with fractions is something else: the tets have no labels then.
+class Regions {
+ public:
+  void read(LineFile& file, std::vector<int>& labels) {
+    const double found = file.real("the region");
+    const bool whole = found == std::floor(found) && found >= std::numeric_limits<int>::min() &&
+                       found <= std::numeric_limits<int>::max();
+    if (!whole && !fraction_) fraction_ = found;
+    labels.push_back(whole ? static_cast<int>(found) : 0);
   }
-  file.reader().fail(
-      fmt::format("{} is {}; a region is a whole number", to_text(file.wanted(value)), found),
-      "number the regions with whole numbers (TetGen: the attribute in the region "
-      "list of the .poly file)");
-}
+  void finish(std::vector<int>& labels, ReadNotes& notes) const {
+    if (fraction_) {
+      labels.clear();
+      notes.remarks.push_back(fmt::format(
+          "the last attribute of the tets is no label: it holds {}, and labels are whole numbers",
+          *fraction_));
+    } else if (!labels.empty()) {
+      notes.tet_labels = "the last attribute of the .ele file";
+    }
+  }
+
+ private:
+  std::optional<double> fraction_;  // the first value that is none
+};
 
 // First line: count, dimension, attributes, markers (0 or 1). Returns the base of the ids.
 std::int64_t read_nodes(const TetgenText& files, TetMesh& mesh) {
@@ -150,34 +164,39 @@ std::array<Index, corners> read_corners(LineFile& file, std::string_view kind, s
   return cell;
 }
 
-// First line: count, nodes a tet, attributes.
-void read_tets(const TetgenText& files, std::int64_t base, TetMesh& mesh) {
+// First line: count, nodes a tet (10: quadratic, corners first), attributes.
+void read_tets(const TetgenText& files, std::int64_t base, TetMesh& mesh, ReadNotes& notes) {
   LineFile file(files.ele, files.ele_name, "tetrahedron");
   TextReader& reader = file.reader();
   const std::size_t count = reader.count({"the number of tetrahedra"}, 5);
   require_indexable(count, "tetrahedra", files.ele_name);
   const std::int64_t corners =
       reader.at_line_end() ? 4 : reader.integer({"the number of nodes a tetrahedron"});
-  if (corners != 4) {
+  if (corners != 4 && corners != 10) {
     reader.fail(fmt::format("the number of nodes a tetrahedron is {}, 4 was expected", corners),
-                corners == 10  ? "run TetGen without -o2: quadratic tetrahedra cannot be used"
-                : corners == 3 ? "this is a file of Triangle, not of TetGen: make a volume mesh"
-                               : "correct the first line: count, 4, number of attributes");
+                corners == 3 ? "this is a file of Triangle, not of TetGen: make a volume mesh"
+                             : "correct the first line: count, 4, number of attributes");
   }
   const std::int64_t attributes = optional_count(file, "the number of attributes", most_attributes);
   file.end_record();
   reader.set_part("a line of a .ele file", "id node node node node attributes...");
   mesh.tets.reserve(count);
+  Regions regions;
   std::int64_t first = base;
   for (std::size_t i = 0; i < count; ++i) {
     const std::int64_t number = base + static_cast<std::int64_t>(i);
     file.set_record(number);
     file.id(first, static_cast<std::int64_t>(i));
     mesh.tets.push_back(read_corners<4>(file, "tetrahedron", number, base, mesh));
+    for (std::int64_t k = 4; k < corners; ++k) file.integer("a node");
     for (std::int64_t k = 1; k < attributes; ++k) file.real("an attribute");
-    if (attributes > 0) mesh.tet_label.push_back(region(file, "the region"));
+    if (attributes > 0) regions.read(file, mesh.tet_label);
     file.end_record();
   }
+  regions.finish(mesh.tet_label, notes);
+  CornerCells quadratic;
+  for (std::size_t i = 0; corners == 10 && i < count; ++i) quadratic.add("quadratic tetrahedra");
+  quadratic.remark(notes);
 }
 
 // First line: count, markers. Values after the marker (TetGen -nn: the neighbours) are not needed.
@@ -203,10 +222,11 @@ void read_faces(const TetgenText& files, std::int64_t base, TetMesh& mesh) {
 
 }  // namespace
 
-TetMesh parse_tetgen(const TetgenText& files) {
+TetMesh parse_tetgen(const TetgenText& files, ReadNotes* notes) {
   TetMesh mesh;
+  ReadNotes unread;
   const std::int64_t base = read_nodes(files, mesh);
-  read_tets(files, base, mesh);
+  read_tets(files, base, mesh, notes == nullptr ? unread : *notes);
   if (!files.face.empty()) read_faces(files, base, mesh);
   require_tets(mesh, files.ele_name);
   drop_zero_labels(mesh.node_label);

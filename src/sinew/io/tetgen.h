@@ -7,6 +7,7 @@
 #include <string>
 #include <string_view>
 
+#include "sinew/io/mesh_notes.h"
 #include "sinew/mesh/tet_mesh.h"
 
 namespace sinew::io {
@@ -18,7 +19,8 @@ struct TetgenText {
 };
 
 // Error (input) for any other pair and for a mesh without tetrahedra.
-TetMesh parse_tetgen(const TetgenText& files);
+// Adds to `notes` if given.
+TetMesh parse_tetgen(const TetgenText& files, ReadNotes* notes = nullptr);
 // Ids from 1. `face` is empty if the mesh has no faces.
 TetgenText format_tetgen(const TetMesh& mesh);
 

@@ -4,40 +4,25 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <limits>
 #include <utility>
 
 #include "sinew/base/error.h"
-#include "sinew/base/text.h"
 #include "sinew/io/cells.h"
 
 namespace sinew::io {
 namespace {
 
-// Written by Sinew; many tools; meshio (medit:ref, gmsh:physical, tetgen:ref, cell_tags);
-// VTK's Gmsh and Exodus readers; SimVascular and VMTK (ModelRegionID, CellEntityIds); Gmsh itself.
-constexpr std::array<std::string_view, 18> names = {
-    "region",        "regions",    "label",           "labels",        "regionid",
-    "region_id",     "material",   "materialid",      "material_id",   "medit:ref",
-    "gmsh:physical", "tetgen:ref", "modelregionid",   "cellentityids", "cell_tags",
-    "ref",           "marker",     "gmsh:geometrical"};
-
-int rank_of(std::string_view name) {
-  const auto place = std::find(names.begin(), names.end(), lower_case(name));
-  return place == names.end() ? -1 : static_cast<int>(place - names.begin());
-}
-
 class GridReader {
  public:
-  GridReader(VtkGrid grid, const std::string& name) : grid_(std::move(grid)), name_(name) {}
+  GridReader(VtkGrid grid, const std::string& name, ReadNotes& notes)
+      : grid_(std::move(grid)), name_(name), notes_(notes) {}
 
   TetMesh mesh() {
     check_shape();
     require_indexable(grid_.points.size(), "points", name_);
     require_indexable(grid_.types.size(), "cells", name_);
-    const std::vector<int> labels = whole_numbers(grid_.cell_label, grid_.types.size(), "cell");
-    mesh_.node_label = whole_numbers(grid_.point_label, grid_.points.size(), "point");
+    const std::vector<int> labels = grid_.cell_arrays.choose(grid_.types.size(), name_, notes_);
+    mesh_.node_label = grid_.point_arrays.choose(grid_.points.size(), name_, notes_);
     mesh_.nodes = std::move(grid_.points);
     std::int64_t start = 0;
     for (std::size_t i = 0; i < grid_.types.size(); ++i) {
@@ -45,6 +30,7 @@ class GridReader {
       start = grid_.offsets[i];
     }
     refused_.check(name_);
+    quadratic_.remark(notes_);
     require_tets(mesh_, name_);
     drop_zero_labels(mesh_.node_label);
     return std::move(mesh_);
@@ -73,28 +59,6 @@ class GridReader {
     }
   }
 
-  std::vector<int> whole_numbers(const LabelArray& array, std::size_t count,
-                                 std::string_view what) const {
-    if (array.rank < 0) return {};
-    if (array.values.size() != count) {
-      fail(fmt::format("{} array \"{}\" holds {} values for {} {}s", what, array.name,
-                       array.values.size(), count, what),
-           "export the file again");
-    }
-    std::vector<int> labels;
-    labels.reserve(count);
-    for (const double value : array.values) {
-      if (!(value == std::floor(value) && value >= std::numeric_limits<int>::min() &&
-            value <= std::numeric_limits<int>::max())) {
-        fail(fmt::format("{} array \"{}\" holds {}; labels are whole numbers", what, array.name,
-                         value),
-             "rename the array if it is not a label, or round its values");
-      }
-      labels.push_back(static_cast<int>(value));
-    }
-    return labels;
-  }
-
   void add_cell(std::size_t i, std::int64_t start, const int* label) {
     const int type = grid_.types[i];
     const CellType cell = vtk_cell_type(type);
@@ -103,19 +67,21 @@ class GridReader {
       refused_.add(cell.name.empty() ? fmt::format("cells of VTK type {}", type)
                                      : std::string(cell.name));
     } else if (cell.use == CellUse::tet) {
-      mesh_.tets.push_back(corners<4>(i, start, nodes, "a tetrahedron"));
+      mesh_.tets.push_back(corners<4>(i, start, nodes, cell, "a tetrahedron"));
       if (label != nullptr) mesh_.tet_label.push_back(*label);
     } else if (cell.use == CellUse::face) {
-      mesh_.faces.push_back(corners<3>(i, start, nodes, "a triangle"));
+      mesh_.faces.push_back(corners<3>(i, start, nodes, cell, "a triangle"));
       mesh_.face_label.push_back(label == nullptr ? 0 : *label);
     }
   }
 
   template <std::size_t count>
   std::array<Index, count> corners(std::size_t i, std::int64_t start, std::int64_t nodes,
-                                   std::string_view kind) const {
-    if (nodes != static_cast<std::int64_t>(count)) {
-      fail(fmt::format("cell {} is {} but has {} points, {} were expected", i, kind, nodes, count),
+                                   const CellType& type, std::string_view kind) {
+    const auto wanted = std::max(count, static_cast<std::size_t>(type.nodes));
+    if (type.nodes == 0 ? nodes < static_cast<std::int64_t>(count)
+                        : nodes != static_cast<std::int64_t>(wanted)) {
+      fail(fmt::format("cell {} is {} but has {} points, {} were expected", i, kind, nodes, wanted),
            "cell types and connectivity do not belong together: export the file again");
     }
     std::array<Index, count> cell{};
@@ -128,30 +94,22 @@ class GridReader {
       }
       cell[k] = static_cast<Index>(id);
     }
+    if (nodes > static_cast<std::int64_t>(count)) quadratic_.add(type.name);
     return cell;
   }
 
   VtkGrid grid_;
   const std::string& name_;
   TetMesh mesh_;
+  ReadNotes& notes_;
   RefusedCells refused_;
+  CornerCells quadratic_;
 };
 
 }  // namespace
 
-bool LabelArray::wants(std::string_view array_name) const {
-  const int found = rank_of(array_name);
-  return found >= 0 && (rank < 0 || found < rank);
-}
-
-void LabelArray::set(std::string_view array_name, std::vector<double> array_values) {
-  name = array_name;
-  rank = rank_of(array_name);
-  values = std::move(array_values);
-}
-
-TetMesh mesh_from_grid(VtkGrid grid, const std::string& name) {
-  return GridReader(std::move(grid), name).mesh();
+TetMesh mesh_from_grid(VtkGrid grid, const std::string& name, ReadNotes& notes) {
+  return GridReader(std::move(grid), name, notes).mesh();
 }
 
 std::vector<int> joined_cell_labels(const TetMesh& mesh) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <limits>
+#include <memory>
 #include <utility>
 
 #include "sinew/base/text.h"
@@ -33,8 +34,9 @@ std::string decoded_name(std::string_view name) {
 
 class VtkParser {
  public:
-  VtkParser(std::string_view bytes, const std::string& name)
-      : text_(bytes, name, 0), values_(text_) {}
+  VtkParser(std::string_view bytes, const std::string& name, const LabelNames& asked,
+            ReadNotes& notes)
+      : text_(bytes, name, 0), values_(text_), notes_(notes), grid_(asked) {}
 
   TetMesh parse();
 
@@ -54,8 +56,9 @@ class VtkParser {
   void field();
   void metadata();
 
-  // tuples x components numbers; stored if the array is a label.
-  void array(std::string_view name, std::size_t components, std::size_t tuples, Scalar type);
+  // The type of an array and its tuples x components values; stored if they may be labels.
+  void array(std::string name, std::size_t components, std::size_t tuples);
+  void array(std::string name, std::size_t components, std::size_t tuples, Scalar type);
   std::int64_t point_id(Scalar type, std::size_t cell);
 
   TextReader text_;
@@ -66,6 +69,7 @@ class VtkParser {
   bool has_types_ = false;
   Owner owner_ = Owner::grid;
   std::size_t tuples_ = 0;  // values an array of the present owner has
+  ReadNotes& notes_;
   VtkGrid grid_;
 };
 
@@ -82,7 +86,7 @@ TetMesh VtkParser::parse() {
                                                                    : "CELL_TYPES"),
                     "the file was cut short, or is no unstructured grid: export it again");
   }
-  return mesh_from_grid(std::move(grid_), text_.file());
+  return mesh_from_grid(std::move(grid_), text_.file(), notes_);
 }
 
 void VtkParser::header() {
@@ -114,8 +118,15 @@ void VtkParser::header() {
   }
   const std::string_view kind = text_.word({"the kind of data set"});
   if (!same_word(kind, "UNSTRUCTURED_GRID")) {
-    text_.fail(fmt::format("the data set is {}, UNSTRUCTURED_GRID was expected", quoted(kind)),
-               "only an unstructured grid holds tetrahedra: export the volume mesh");
+    const bool image = same_word(kind, "STRUCTURED_POINTS");
+    text_.fail(fmt::format("the data set is {}, {}UNSTRUCTURED_GRID was expected", quoted(kind),
+                           same_word(kind, "POLYDATA") ? "a surface; "
+                           : image                     ? "an image; "
+                                                       : ""),
+               same_word(kind, "POLYDATA") ? std::string(fill_vtk_surface)
+               : image                     ? std::string(fill_vtk_image)
+                       : std::string("only an unstructured grid holds tetrahedra: export the "
+                                     "volume mesh"));
   }
 }
 
@@ -301,7 +312,7 @@ bool VtkParser::attribute(std::string_view keyword) {
   for (const Kind& kind : kinds) {
     if (!same_word(keyword, kind.keyword)) continue;
     const std::string name = decoded_name(text_.word({"the name of an array"}));
-    array(name, kind.components, tuples_, values_.scalar({"the type of an array"}));
+    array(name, kind.components, tuples_);
     return true;
   }
   const bool color = same_word(keyword, "COLOR_SCALARS");
@@ -322,6 +333,7 @@ bool VtkParser::attribute(std::string_view keyword) {
 
 void VtkParser::scalars() {
   const std::string name = decoded_name(text_.word({"the name of an array"}));
+  if (values_.is_text()) return array(name, 1, tuples_);
   const Scalar type = values_.scalar({"the type of an array"});
   std::size_t components = 1;
   if (!text_.at_line_end()) {
@@ -346,7 +358,7 @@ void VtkParser::field() {
     const std::string name = decoded_name(text_.word({"the name of an array"}));
     const std::size_t components = values_.count({"the number of components"});
     const std::size_t tuples = values_.count({"the number of tuples"});
-    array(name, components, tuples, values_.scalar({"the type of an array"}));
+    array(name, components, tuples);
   }
 }
 
@@ -357,31 +369,44 @@ void VtkParser::metadata() {
   }
 }
 
-void VtkParser::array(std::string_view name, std::size_t components, std::size_t tuples,
-                      Scalar type) {
-  LabelArray* labels = owner_ == Owner::cells    ? &grid_.cell_label
-                       : owner_ == Owner::points ? &grid_.point_label
-                                                 : nullptr;
-  if (labels == nullptr || components != 1 || tuples != tuples_ || type == Scalar::bit ||
-      !labels->wants(name)) {
+void VtkParser::array(std::string name, std::size_t components, std::size_t tuples) {
+  if (!values_.is_text()) {
+    return array(std::move(name), components, tuples, values_.scalar({"the type of an array"}));
+  }
+  values_.skip_text_array(components, tuples);
+  if (owner_ == Owner::grid) return;
+  (owner_ == Owner::cells ? grid_.cell_arrays : grid_.point_arrays)
+      .add(std::move(name), ArrayKind::text, {});
+}
+
+void VtkParser::array(std::string name, std::size_t components, std::size_t tuples, Scalar type) {
+  if (owner_ == Owner::grid) return values_.skip_array(components, tuples, type);
+  LabelArrays& arrays = owner_ == Owner::cells ? grid_.cell_arrays : grid_.point_arrays;
+  const bool real = type == Scalar::f32 || type == Scalar::f64;
+  if (components != 1 || tuples != tuples_ || type == Scalar::bit ||
+      (real && !arrays.wants(name))) {
     values_.skip_array(components, tuples, type);
+    arrays.add(std::move(name), components > 1 ? ArrayKind::vector : ArrayKind::fractional, {});
     return;
   }
   const Wanted wanted{"the number of values of an array"};
   values_.start_data(wanted);
   values_.check_room(tuples, 1, type, wanted);
-  std::vector<double> found;
-  found.reserve(tuples);
+  auto found = std::make_shared<std::vector<double>>();
+  found->reserve(tuples);
   for (std::size_t i = 0; i < tuples; ++i) {
-    found.push_back(values_.number(type, {"value", name, static_cast<std::int64_t>(i)}));
+    found->push_back(values_.number(type, {"value", name, static_cast<std::int64_t>(i)}));
   }
-  labels->set(name, std::move(found));
+  arrays.add(std::move(name), real ? ArrayKind::fractional : ArrayKind::whole,
+             [found] { return *found; });
 }
 
 }  // namespace
 
-TetMesh parse_vtk(std::string_view bytes, const std::string& name) {
-  return VtkParser(bytes, name).parse();
+TetMesh parse_vtk(std::string_view bytes, const std::string& name, const LabelNames& labels,
+                  ReadNotes* notes) {
+  ReadNotes unread;
+  return VtkParser(bytes, name, labels, notes == nullptr ? unread : *notes).parse();
 }
 
 }  // namespace sinew::io

@@ -21,6 +21,7 @@ constexpr std::array scalar_names = {
     ScalarName{"INT", Scalar::i32},          ScalarName{"UNSIGNED_INT", Scalar::u32},
     ScalarName{"LONG", Scalar::i64},         ScalarName{"UNSIGNED_LONG", Scalar::u64},
     ScalarName{"VTKIDTYPE", Scalar::i32},  // written as int by VTK
+    ScalarName{"LONG_LONG", Scalar::i64},    ScalarName{"UNSIGNED_LONG_LONG", Scalar::u64},
     ScalarName{"VTKTYPEINT8", Scalar::i8},   ScalarName{"VTKTYPEUINT8", Scalar::u8},
     ScalarName{"VTKTYPEINT16", Scalar::i16}, ScalarName{"VTKTYPEUINT16", Scalar::u16},
     ScalarName{"VTKTYPEINT32", Scalar::i32}, ScalarName{"VTKTYPEUINT32", Scalar::u32},
@@ -65,8 +66,7 @@ Scalar VtkValues::scalar(const Wanted& wanted) {
     if (same_word(found, known.name)) return known.type;
   }
   text_.fail(fmt::format("expected {}, found {}", to_text(wanted), quoted(found)),
-             "the types of numbers are float, double, int, long, vtktypeint64 and the like; arrays "
-             "of text cannot be read: save the file without them");
+             "the types of numbers are float, double, int, long, vtktypeint64 and the like");
 }
 
 void VtkValues::start_data(const Wanted& wanted) {
@@ -130,6 +130,43 @@ void VtkValues::skip_array(std::size_t components, std::size_t tuples, Scalar ty
     text_.skip_values(total, wanted);
   } else {
     text_.take(type == Scalar::bit ? (total + 7) / 8 : total * scalar_bytes(type), wanted);
+  }
+}
+
+bool VtkValues::is_text() {
+  const std::string_view type = text_.peek();
+  return same_word(type, "STRING") || same_word(type, "UTF8_STRING") || same_word(type, "VARIANT");
+}
+
+// Binary: the two highest bits of a text's first byte say how many bytes its length takes
+// (vtkDataWriter).
+void VtkValues::skip_text_array(std::size_t components, std::size_t tuples) {
+  const Wanted wanted{"a text of an array"};
+  const std::string_view type = text_.word({"the type of an array"});
+  if (binary_ && same_word(type, "VARIANT")) {
+    text_.fail("an array of variants cannot be read in binary form",
+               "save the file without it, as text, or as VTU");
+  }
+  if (components > 0 && tuples > text_.remaining() / components) {
+    text_.fail(fmt::format("an array of {} times {} texts cannot be in the {} bytes that follow",
+                           tuples, components, text_.remaining()),
+               "the file was cut short or the count is too large: fetch it again, or correct the "
+               "count");
+  }
+  text_.line_rest();
+  if (binary_) values_.set_binary(std::endian::native == std::endian::little);
+  for (std::size_t left = components * tuples; left > 0; --left) {
+    if (!binary_) {
+      if (text_.remaining() == 0) text_.word(wanted);  // its error
+      text_.line_rest();
+      continue;
+    }
+    const auto first = static_cast<unsigned char>(text_.take(1, wanted).front());
+    const std::size_t more = (std::size_t{8} >> (first >> 6U)) - 1;
+    std::size_t length = first & 0x3FU;
+    for (const char byte : text_.take(more, wanted))
+      length = length << 8U | static_cast<unsigned char>(byte);
+    text_.take(length, wanted);
   }
 }
 

@@ -32,6 +32,10 @@ class VtkValues {
   double number(Scalar type, const Wanted& wanted);
   std::int64_t integer(Scalar type, const Wanted& wanted);
   void skip_array(std::size_t components, std::size_t tuples, Scalar type);
+  // Whether the next word is the type of an array of text.
+  bool is_text();
+  // The type and the texts: a line each, or bytes with their length before them.
+  void skip_text_array(std::size_t components, std::size_t tuples);
 
  private:
   TextReader& text_;

@@ -1,8 +1,8 @@
 // VTU: an unstructured grid in VTK's XML format (VTK file formats, "XML File Formats").
 //
 // Read: ASCII, Base64 inline, appended Base64 and appended raw, each plain or zlib-compressed,
-// UInt32 and UInt64 headers, both byte orders, one Piece. Triangles become faces; labels come from
-// the arrays that vtk.h names.
+// UInt32 and UInt64 headers, both byte orders, one Piece. Triangles become faces; labels as in
+// vtk.h.
 // Written: one Piece, tets first, then faces. ParaView and meshio read it.
 #pragma once
 
@@ -14,12 +14,15 @@
 #include <vector>
 
 #include "sinew/base/words.h"
+#include "sinew/io/mesh_notes.h"
 #include "sinew/mesh/tet_mesh.h"
 
 namespace sinew::io {
 
 // name: for errors. Error (input) for any other file and for a mesh without tetrahedra.
-TetMesh parse_vtu(std::string_view bytes, const std::string& name);
+// Adds to `notes` if given.
+TetMesh parse_vtu(std::string_view bytes, const std::string& name, const LabelNames& labels = {},
+                  ReadNotes* notes = nullptr);
 
 enum class VtuEncoding { ascii, base64, zlib };  // zlib: compressed, then Base64
 constexpr std::array<Word<VtuEncoding>, 3> words_of(VtuEncoding) {

@@ -58,8 +58,13 @@ void convert(std::string_view type, std::string_view bytes, bool swap, std::vect
 
 class VtuParser {
  public:
-  VtuParser(std::string_view bytes, const std::string& name)
-      : bytes_(bytes), name_(name), trusted_(trusted_expansion * bytes.size() + always_trusted) {}
+  VtuParser(std::string_view bytes, const std::string& name, const LabelNames& asked,
+            ReadNotes& notes)
+      : bytes_(bytes),
+        name_(name),
+        asked_(asked),
+        notes_(notes),
+        trusted_(trusted_expansion * bytes.size() + always_trusted) {}
 
   TetMesh parse();
 
@@ -69,7 +74,7 @@ class VtuParser {
   pugi::xml_node only_child(const pugi::xml_node& parent, const char* child) const;
   std::size_t count(const pugi::xml_node& node, const char* attribute) const;
   pugi::xml_node named_array(const pugi::xml_node& parent, std::string_view name) const;
-  void labels(const pugi::xml_node& data, std::size_t count, LabelArray& label);
+  void list_arrays(const pugi::xml_node& data, std::size_t count, LabelArrays& arrays);
   // The numbers of a DataArray; `expected`: how many, or any_size.
   template <typename T>
   std::vector<T> values(const pugi::xml_node& array, std::size_t expected);
@@ -88,6 +93,8 @@ class VtuParser {
 
   std::string_view bytes_;
   const std::string& name_;
+  const LabelNames& asked_;
+  ReadNotes& notes_;
   std::size_t trusted_;  // remaining bytes that the arrays may decode to
   pugi::xml_document document_;
   std::string_view appended_;  // the appended data behind their underscore
@@ -135,8 +142,14 @@ void VtuParser::read_form(const pugi::xml_node& root) {
   const std::string_view kind = root.attribute("type").value();
   if (kind != "UnstructuredGrid") {
     fail_at(root,
-            fmt::format("the type of VTKFile is {}, UnstructuredGrid was expected", quoted(kind)),
-            "only an unstructured grid holds tetrahedra: export the volume mesh as VTU");
+            fmt::format("the type of VTKFile is {}, {}UnstructuredGrid was expected", quoted(kind),
+                        kind == "PolyData"    ? "a surface; "
+                        : kind == "ImageData" ? "an image; "
+                                              : ""),
+            kind == "PolyData"    ? fill_vtk_surface
+            : kind == "ImageData" ? fill_vtk_image
+                                  : "only an unstructured grid holds tetrahedra: export the volume "
+                                    "mesh as VTU");
   }
   const std::string_view order = root.attribute("byte_order").as_string("LittleEndian");
   if (order != "LittleEndian" && order != "BigEndian") {
@@ -175,7 +188,7 @@ TetMesh VtuParser::parse() {
   const std::size_t points = count(piece, "NumberOfPoints");
   const std::size_t cells = count(piece, "NumberOfCells");
 
-  VtkGrid grid;
+  VtkGrid grid(asked_);
   const pugi::xml_node position = only_child(only_child(piece, "Points"), "DataArray");
   if (position.attribute("NumberOfComponents").as_int(3) != 3) {
     fail_at(position,
@@ -196,9 +209,9 @@ TetMesh VtuParser::parse() {
   grid.connectivity = values<std::int64_t>(named_array(list, "connectivity"), any_size);
   grid.offsets = values<std::int64_t>(named_array(list, "offsets"), cells);
   grid.types = values<int>(named_array(list, "types"), cells);
-  labels(piece.child("PointData"), points, grid.point_label);
-  labels(piece.child("CellData"), cells, grid.cell_label);
-  return mesh_from_grid(std::move(grid), name_);
+  list_arrays(piece.child("PointData"), points, grid.point_arrays);
+  list_arrays(piece.child("CellData"), cells, grid.cell_arrays);
+  return mesh_from_grid(std::move(grid), name_, notes_);
 }
 
 pugi::xml_node VtuParser::only_child(const pugi::xml_node& parent, const char* child) const {
@@ -233,11 +246,21 @@ pugi::xml_node VtuParser::named_array(const pugi::xml_node& parent, std::string_
   fail_at(parent, fmt::format("{} has no DataArray named {}", parent.name(), name), export_again);
 }
 
-void VtuParser::labels(const pugi::xml_node& data, std::size_t count, LabelArray& label) {
-  for (const pugi::xml_node& array : data.children("DataArray")) {
-    const std::string_view name = array.attribute("Name").value();
-    const bool one = array.attribute("NumberOfComponents").as_int(1) <= 1;
-    if (one && label.wants(name)) label.set(name, values<double>(array, count));
+void VtuParser::list_arrays(const pugi::xml_node& data, std::size_t count, LabelArrays& arrays) {
+  for (const pugi::xml_node& array : data.children()) {
+    const std::string_view element = array.name();
+    if (element != "DataArray" && element != "Array") continue;  // Array: of text
+    const std::string_view type = array.attribute("type").value();
+    ArrayKind kind = ArrayKind::whole;
+    if (element == "Array" || type_bytes(type) == 0) {
+      kind = ArrayKind::text;
+    } else if (array.attribute("NumberOfComponents").as_int(1) > 1) {
+      kind = ArrayKind::vector;
+    } else if (type.starts_with("Float")) {
+      kind = ArrayKind::fractional;
+    }
+    arrays.add(array.attribute("Name").value(), kind,
+               [this, array, count] { return values<double>(array, count); });
   }
 }
 
@@ -343,8 +366,10 @@ std::string VtuParser::binary_values(const pugi::xml_node& array, const std::str
 
 }  // namespace
 
-TetMesh parse_vtu(std::string_view bytes, const std::string& name) {
-  return VtuParser(bytes, name).parse();
+TetMesh parse_vtu(std::string_view bytes, const std::string& name, const LabelNames& labels,
+                  ReadNotes* notes) {
+  ReadNotes unread;
+  return VtuParser(bytes, name, labels, notes == nullptr ? unread : *notes).parse();
 }
 
 }  // namespace sinew::io

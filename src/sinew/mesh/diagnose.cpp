@@ -9,7 +9,9 @@
 #include <utility>
 
 #include "sinew/base/error.h"
+#include "sinew/mesh/doubles.h"
 #include "sinew/mesh/faces.h"
+#include "sinew/mesh/quality.h"
 #include "sinew/mesh/surface.h"
 
 namespace sinew {
@@ -50,6 +52,7 @@ class Doctor {
     check_components();
     std::stable_sort(diagnosis_.problems.begin(), diagnosis_.problems.end(),
                      [](const Problem& a, const Problem& b) { return a.kind < b.kind; });
+    for (Problem& problem : diagnosis_.problems) set_places(problem);
     return std::move(diagnosis_);
   }
 
@@ -63,13 +66,18 @@ class Doctor {
   void check_vertices(std::span<const Triangle> triangles);
   void check_nodes();
   void check_components();
+  void set_places(Problem& problem) const;
 
   // Singular and plural of a noun; `what` follows the ids.
   void report(ProblemKind kind, Severity severity, const Finds& finds, const char* one,
               const char* several, const char* what, const char* remedy) {
     if (finds.count == 0) return;
     diagnosis_.problems.push_back(
-        {kind, severity, finds.count, finds.first,
+        {kind,
+         severity,
+         finds.count,
+         finds.first,
+         {},
          fmt::format("{} {} {}: {}", finds.count, finds.count == 1 ? one : several, list_ids(finds),
                      what),
          remedy});
@@ -88,6 +96,7 @@ void Doctor::check_empty() {
       {ProblemKind::empty,
        Severity::fatal,
        1,
+       {},
        {},
        fmt::format("the mesh is empty: {} nodes, {} tetrahedra", mesh_.nodes.size(),
                    mesh_.tets.size()),
@@ -138,7 +147,8 @@ void Doctor::check_coordinates() {
 // Repeated nodes, duplicates, volumes. Afterwards sound_ holds the tets without the first two
 // faults.
 void Doctor::check_tets() {
-  Finds repeated, duplicate, degenerate;
+  Finds repeated, duplicate, degenerate, near_flat;
+  double least_ratio = 1;
   std::vector<std::pair<Tet, Index>> keys;
   keys.reserve(sound_.size());
   for (const Index t : sound_) {
@@ -172,7 +182,14 @@ void Doctor::check_tets() {
       }
     }
     const double volume = signed_volume(mesh_.nodes, tet);
-    if (std::abs(volume) <= kFlat * longest * std::sqrt(longest)) {
+    const double ratio = radius_ratio({mesh_.nodes[uz(tet[0])], mesh_.nodes[uz(tet[1])],
+                                       mesh_.nodes[uz(tet[2])], mesh_.nodes[uz(tet[3])]});
+    const bool degenerate_tet = std::abs(volume) <= kFlat * longest * std::sqrt(longest);
+    if (!degenerate_tet && ratio < kNearFlat) {
+      near_flat.add({t});
+      least_ratio = std::min(least_ratio, ratio);
+    }
+    if (degenerate_tet) {
       degenerate.add({t});
       flat_.push_back(1);
     } else {
@@ -181,11 +198,20 @@ void Doctor::check_tets() {
     }
   }
   report(ProblemKind::repeated_node, Severity::fatal, repeated, "tet", "tets",
-         "names the same node twice", "remove collapsed tets in the mesher");
+         "names the same node twice", "sinew repair IN OUT removes them");
   report(ProblemKind::duplicate_tet, Severity::fatal, duplicate, "duplicate tet", "duplicate tets",
-         "the same four nodes as an earlier tet", "remove duplicate tets in the mesher");
+         "the same four nodes as an earlier tet", "sinew repair IN OUT removes them");
   report(ProblemKind::degenerate, Severity::fatal, degenerate, "degenerate tet", "degenerate tets",
-         "no volume", "remesh, or improve the mesh (Gmsh: Mesh.Optimize; CGAL: perturb and exude)");
+         "no volume",
+         "sinew repair IN OUT removes most of them; otherwise improve the mesh (Gmsh: "
+         "Mesh.Optimize; CGAL: perturb and exude)");
+
+  const std::string ratio_text = fmt::format(
+      "nearly without volume (radius ratio {:.2g}), so explicit steps are very short", least_ratio);
+  report(ProblemKind::near_flat, Severity::warning, near_flat, "near-flat tet", "near-flat tets",
+         ratio_text.c_str(),
+         "sinew repair IN OUT removes most of them, repair = true of a body in a scene does, too; "
+         "stepper = \"implicit\" does not mind them");
 
   const bool convention = negative.size() > positive.size();
   Finds all, odd;
@@ -314,33 +340,55 @@ void Doctor::check_nodes() {
     }
   }
   Finds unreferenced;
-  std::vector<Index> by_position;
   for (Index i = 0; i < mesh_.node_count(); ++i) {
-    if (used[uz(i)] == 0) {
-      unreferenced.add({i});
-    } else if (sound_node_[uz(i)] != 0) {
-      by_position.push_back(i);
-    }
+    if (used[uz(i)] == 0) unreferenced.add({i});
   }
-  const auto position = [&](Index i) {
-    const Vec3& x = mesh_.nodes[uz(i)];
-    return std::array<double, 3>{x.x(), x.y(), x.z()};
-  };
-  std::stable_sort(by_position.begin(), by_position.end(),
-                   [&](Index i, Index j) { return position(i) < position(j); });
-  std::vector<Index> copies;
-  for (std::size_t k = 1; k < by_position.size(); ++k) {
-    if (position(by_position[k]) == position(by_position[k - 1])) copies.push_back(by_position[k]);
-  }
-  std::sort(copies.begin(), copies.end());
+  std::vector<Tet> tets;
+  for (const Index t : sound_) tets.push_back(mesh_.tets[uz(t)]);
   Finds duplicate;
-  for (const Index i : copies) duplicate.add({i});
+  for (const auto& [node, earlier] : find_doubles(mesh_.nodes, tets)) duplicate.add({node});
 
   report(ProblemKind::unreferenced_node, Severity::repairable, unreferenced, "unreferenced node",
          "unreferenced nodes", "named by no tet", "");
   report(ProblemKind::duplicate_node, Severity::warning, duplicate, "duplicate node",
          "duplicate nodes", "at the position of an earlier node, so parts may not be connected",
-         "merge duplicate nodes in the mesher (Gmsh: Coherence Mesh)");
+         "sinew repair IN OUT joins them, repair = true of a body in a scene does, too");
+}
+
+// The middle of the tets, faces, edges or nodes that a problem lists.
+void Doctor::set_places(Problem& problem) const {
+  using enum ProblemKind;
+  bool tets = false;
+  switch (problem.kind) {
+    case empty:
+    case bad_node_id:
+    case non_finite:
+      return;
+    case repeated_node:
+    case duplicate_tet:
+    case degenerate:
+    case inverted_all:
+    case inverted:
+    case near_flat:
+    case components:
+      tets = true;
+      break;
+    case non_manifold_face:
+    case unreferenced_node:
+    case overlap:
+    case duplicate_node:
+    case non_manifold_edge:
+    case non_manifold_vertex:
+    case loose_face:
+      break;
+  }
+  for (const std::vector<Index>& ids : problem.first) {
+    Vec3 sum = Vec3::Zero();
+    const std::size_t count = tets ? 4 : ids.size();
+    for (std::size_t k = 0; k < count; ++k)
+      sum += mesh_.nodes[uz(tets ? mesh_.tets[uz(ids[0])][k] : ids[k])];
+    problem.places.push_back(sum / static_cast<double>(count));
+  }
 }
 
 void Doctor::check_components() {
@@ -350,12 +398,19 @@ void Doctor::check_components() {
   const Components components = connected_components(tets, mesh_.node_count());
   if (components.count < 2) return;
   Finds parts;
+  std::vector<std::int64_t> sizes(uz(components.count), 0);
   for (std::size_t k = 0; k < tets.size(); ++k) {
     if (components.of[k] == parts.count) parts.add({sound_[k]});
+    ++sizes[uz(components.of[k])];
   }
+  sizes.resize(std::min(sizes.size(), kFirstIds));
+  const std::string text = fmt::format(
+      "of {}{} tets; they share no node, so they do not pull at each other; the ids are each "
+      "part's first tet",
+      fmt::join(sizes, ", "), components.count > static_cast<Index>(sizes.size()) ? ", ..." : "");
   report(ProblemKind::components, Severity::warning, parts, "part", "unconnected parts",
-         "they share no node, so they do not pull at each other; the ids are each part's first tet",
-         "join them in the mesher, or make each a body of its own");
+         text.c_str(),
+         "join them in the mesher (double nodes: sinew repair), or make each a body of its own");
 }
 
 void require_label_sizes(const TetMesh& mesh) {

@@ -96,6 +96,8 @@ std::string name(ProblemKind kind) {
       return "inverted";
     case ProblemKind::unreferenced_node:
       return "unreferenced_node";
+    case ProblemKind::near_flat:
+      return "near_flat";
     case ProblemKind::overlap:
       return "overlap";
     case ProblemKind::duplicate_node:

@@ -29,8 +29,9 @@ enum class ProblemKind {
   inverted_all,         // more than half the tets are negative: the convention of the file
   inverted,             // tets whose orientation differs from most others'
   unreferenced_node,    // no tet names the node
+  near_flat,            // radius ratio below kNearFlat, but not degenerate
   overlap,              // both tets of a face lie on the same side of it
-  duplicate_node,       // a node lies exactly on an earlier one
+  duplicate_node,       // a node lies on an earlier one (mesh/doubles.h)
   non_manifold_edge,    // more than two surface triangles share an edge
   non_manifold_vertex,  // the surface touches itself at a node
   loose_face,           // a labelled face that belongs to no tet
@@ -48,8 +49,9 @@ struct Problem {
   // The first few: a node or tet as one id, a face or edge as its node ids; for `components` the
   // first tet of each part.
   std::vector<std::vector<Index>> first;
-  std::string text;    // "3 degenerate tets (0, 7, 12): no volume"
-  std::string remedy;  // empty if repair() corrects the problem
+  std::vector<Vec3> places;  // of `first`, in the nodes' unit; empty if there is no place
+  std::string text;          // "3 degenerate tets (0, 7, 12): no volume"
+  std::string remedy;        // empty if repair() corrects the problem
 };
 
 struct Diagnosis {
@@ -58,6 +60,10 @@ struct Diagnosis {
   bool has(Severity severity) const;
   const Problem* find(ProblemKind kind) const;  // nullptr if it was not found
 };
+
+// Tets with a smaller radius ratio (mesh/quality.h) make explicit steps very short. Meshers that
+// improve their tets stay above 1e-2.
+constexpr double kNearFlat = 1e-3;
 
 // Maximum number of ids that a problem lists.
 constexpr std::size_t kFirstIds = 5;

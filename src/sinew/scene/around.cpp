@@ -57,7 +57,9 @@ Scene scene_around(const std::filesystem::path& mesh, const std::vector<std::str
       mesh.filename().string(), toml_text(mesh.filename().string()),
       millimetres ? "It was taken to be in millimetres." : "It was taken to be in metres.", name,
       scale, 0.1 * scale * (high - low).y());
-  return parse_scene(text, mesh.string() + ".toml", mesh.parent_path(), overrides);
+  // A bare name has no parent path.
+  return parse_scene(text, mesh.string() + ".toml", std::filesystem::absolute(mesh).parent_path(),
+                     overrides);
 }
 
 Scene load_scene_or_mesh(const std::filesystem::path& file,

@@ -19,6 +19,7 @@
 #include "sinew/model/mean_edge.h"
 #include "sinew/model/state.h"
 #include "sinew/scene/connect.h"
+#include "sinew/scene/loose.h"
 #include "sinew/scene/place.h"
 #include "sinew/scene/rigid_mesh.h"
 #include "sinew/scene/start.h"
@@ -40,14 +41,26 @@ Vec3 mean(const Model& model, const std::vector<Index>& nodes) {
 
 // ---- bodies ----
 
-[[noreturn]] void refuse_label(const SceneBody& body, const SceneRegion& region, int label,
+// Where the labels come from, and what else the file offers.
+std::string label_source(const io::ReadNotes& notes) {
+  std::string text;
+  if (!notes.tet_labels.empty()) text += fmt::format(" (from the file's {})", notes.tet_labels);
+  const std::string others = io::unused_cell_arrays(notes);
+  if (!others.empty())
+    text += fmt::format(
+        "; arrays of whole numbers that are not used: {}; labels = \"NAME\" takes one", others);
+  return text;
+}
+
+[[noreturn]] void refuse_label(const PlacedBody& placed, const SceneRegion& region, int label,
                                const std::set<int>& known) {
+  const SceneBody& body = *placed.body;
   std::string list;
   for (const int l : known) list += (list.empty() ? "" : ", ") + std::to_string(l);
   throw Error(ErrorKind::input,
               fmt::format("[body.{}.region.{}] covers label {}, which the mesh does not have",
                           body.name, region.name, label),
-              "its tets have the labels: " + list, region.where);
+              "its tets have the labels: " + list + label_source(placed.notes), region.where);
 }
 
 // Materials by region: those of the scene, then the body's own for the labels that none covers.
@@ -59,7 +72,7 @@ void assign_regions(const PlacedBody& placed, BodySpec& spec) {
   std::map<int, int> region_of;
   for (const SceneRegion& region : body.regions) {
     for (const int label : region.labels) {
-      if (known.count(label) == 0) refuse_label(body, region, label, known);
+      if (known.count(label) == 0) refuse_label(placed, region, label, known);
       region_of[label] = static_cast<int>(spec.materials.size());
     }
     spec.regions.push_back(region.name);
@@ -299,6 +312,7 @@ Model build_model(const Scene& scene, BuildReport* report) {
   std::vector<std::string> warnings = Parts(scene, bodies, model).add();
   build_contact_surface(model);
   finish(model);
+  refuse_loose_parts(scene, model);
   if (report != nullptr) {
     report->warnings = std::move(warnings);
     for (std::string& w : start_warnings(scene, model)) report->warnings.push_back(std::move(w));

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sinew/base/text.h"
+#include "sinew/io/mesh_io.h"
 #include "sinew/scene/document_values.h"
 #include "sinew/scene/filled.h"
 #include "sinew/scene/framework_text.h"
@@ -309,6 +310,17 @@ class Translator {
   std::vector<std::string> warnings_;
 };
 
+void refuse_mesh_as_scene(const fs::path& file) {
+  io::refuse_other_format(file);
+  if (!io::is_mesh_name(file)) return;
+  const std::string name = file.filename().string();
+  throw Error(ErrorKind::input, "is a mesh, not a scene",
+              fmt::format("write a scene with [body.NAME] and mesh = \"{}\" in it; sinew view {} "
+                          "shows the mesh alone",
+                          name, name),
+              {file.string(), 0, 0});
+}
+
 }  // namespace
 
 bool is_framework_scene(const fs::path& file, std::string_view text) {
@@ -332,6 +344,7 @@ Scene parse_framework(const FrameworkText& text, const FrameworkOptions& options
 
 Scene load_framework_scene(const fs::path& file, const FrameworkOptions& options,
                            const std::vector<std::string>& overrides) {
+  refuse_mesh_as_scene(file);
   const std::string scene = read_scene_text(file, "scene");
   if (!is_framework_scene(file, scene)) {
     if (options.any())

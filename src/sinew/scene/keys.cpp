@@ -104,6 +104,9 @@ KeyTables make_tables() {
             {
                 text("mesh"),
                 number("mesh_size", "m", "", positive),
+                text("labels", "the choice of the rule"),
+                text("node_labels", "the choice of the rule"),
+                boolean("repair", "false"),
                 point("fit", "", "", positive),
                 word("shape", "", all_words<BodyShape>()),
                 other("cells", T::cells, "", "[4, 4, 16]", from_to(1, 20'000'000)),

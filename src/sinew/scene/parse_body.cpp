@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <utility>
 
 #include "sinew/model/material_words.h"
 #include "sinew/scene/filled.h"
@@ -45,6 +46,19 @@ void refuse_shape_keys_that_do_not_fit(const Reader& reader, const SceneBody& bo
   }
 }
 
+void parse_labels(const Reader& reader, SceneBody& body) {
+  for (const auto& [key, name] :
+       {std::pair{"labels", &body.labels.tets}, std::pair{"node_labels", &body.labels.nodes}}) {
+    if (!reader.text(key, *name)) continue;
+    if (body.mesh.empty() || is_filled(body.mesh))
+      reader.fail(key, fmt::format("{} goes with a file of tetrahedra only", reader.called(key)),
+                  "remove it; shapes, surfaces and images have no arrays to choose from");
+    if (name->empty())
+      reader.fail(key, fmt::format("{} is empty; expected a name", reader.called(key)),
+                  "name an array of the mesh file: sinew info lists them");
+  }
+}
+
 void parse_source(const Reader& reader, SceneBody& body) {
   reader.text("mesh", body.mesh);
   reader.word("shape", body.shape);
@@ -63,6 +77,10 @@ void parse_source(const Reader& reader, SceneBody& body) {
     reader.fail("mesh_size",
                 fmt::format("{} goes with a surface or an image only", reader.called("mesh_size")),
                 "remove it, or name a file .off .obj .stl .ply .inr .nii as mesh");
+  parse_labels(reader, body);
+  if (reader.boolean("repair", body.repair) && body.repair && body.mesh.empty())
+    reader.fail("repair", fmt::format("{} goes with a mesh file only", reader.called("repair")),
+                "remove it; the mesh of a shape needs no repair");
   if (reader.point("fit", body.fit) && body.mesh.empty())
     reader.fail("fit", fmt::format("{} goes with a mesh file only", reader.called("fit")),
                 "remove it; a shape has keys for its size");

@@ -9,12 +9,14 @@
 #include "sinew/io/mesh_io.h"
 #include "sinew/io/surface_file.h"
 #include "sinew/mesh/doctor.h"
+#include "sinew/mesh/mend.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/size.h"
 #include "sinew/mesh/subdivide.h"
 #include "sinew/scene/filled.h"
 #include "sinew/scene/keys.h"
 #include "sinew/scene/nearest_node.h"
+#include "sinew/scene/step_cost.h"
 #include "sinew/scene/weight.h"
 
 namespace sinew {
@@ -46,7 +48,8 @@ fs::path shown(const fs::path& path) {
               "mesh paths start from the scene file's folder", body.mesh_where);
 }
 
-TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source) {
+TetMesh read_file(const Scene& scene, const SceneBody& body, PlacedBody& placed) {
+  std::string& source = placed.source;
   if (const auto given = scene.given.bodies.find(body.mesh); given != scene.given.bodies.end()) {
     source = fmt::format("the arrays of [body.{}]", body.name);
     TetMesh mesh = *given->second;
@@ -62,7 +65,7 @@ TetMesh read_file(const Scene& scene, const SceneBody& body, std::string& source
   if (is_filled(path)) {
     return read_filled(source, body.mesh_size / body.scale, body.mesh_where, body.fit);
   }
-  TetMesh mesh = io::read_mesh(source);
+  TetMesh mesh = io::read_mesh(source, body.labels, &placed.notes);
   if (body.fit) fit_to(mesh.nodes, *body.fit, body.mesh_where);
   return mesh;
 }
@@ -91,11 +94,20 @@ TetMesh make_shape(const SceneBody& body) {
   throw Error(ErrorKind::internal, "a body without a mesh and a shape");
 }
 
+// With `repair = true`: the node that each node of the file was merged into. Otherwise empty.
+std::vector<Index> mend_if_asked(PlacedBody& placed) {
+  if (!placed.body->repair) return {};
+  const MendReport report = mend(placed.mesh);
+  for (const std::string& line : describe(report)) placed.warnings.push_back("repair: " + line);
+  return report.merged_into;
+}
+
 // Diagnoses and repairs the mesh, and notes the faults.
 void make_sound(PlacedBody& placed) {
   const auto in_file = static_cast<std::size_t>(placed.mesh.node_count());
   const bool is_file = !placed.body->mesh.empty();
   RepairReport report;
+  const std::vector<Index> merged = mend_if_asked(placed);
   try {
     report = repair(placed.mesh, is_file ? placed.source : std::string());
   } catch (const Error& error) {
@@ -108,6 +120,8 @@ void make_sound(PlacedBody& placed) {
   placed.node_of_file.assign(in_file, -1);
   for (std::size_t i = 0; i < report.original_node.size(); ++i)
     placed.node_of_file[static_cast<std::size_t>(report.original_node[i])] = static_cast<Index>(i);
+  for (std::size_t i = 0; i < merged.size(); ++i)
+    placed.node_of_file[i] = placed.node_of_file[uz(merged[i])];
 }
 
 // Ids of a surface file refer to its vertices: each stands for the node nearest to it.
@@ -186,7 +200,7 @@ PlacedBody place(const Scene& scene, const SceneBody& body) {
   PlacedBody placed;
   placed.body = &body;
   if (body.shape == BodyShape::file) {
-    placed.mesh = read_file(scene, body, placed.source);
+    placed.mesh = read_file(scene, body, placed);
   } else {
     placed.source = fmt::format("shape {}", word_of(body.shape));
     placed.mesh = make_shape(body);
@@ -198,11 +212,14 @@ PlacedBody place(const Scene& scene, const SceneBody& body) {
   const double volume = checked_volume(placed);
   const bool said_to_be_metres = body.scale_given && body.scale == 1.0;
   const auto warning = size_warning(volume, placed.high - placed.low, body.scale);
+  std::vector<std::string>& warnings = placed.warnings;
   if (warning && !said_to_be_metres) {
-    placed.warnings.insert(placed.warnings.begin(), *warning);
+    warnings.insert(warnings.begin(), *warning);  // a wrong unit explains the others
   } else if (const auto flat = weight_warning(scene, placed)) {
-    placed.warnings.insert(placed.warnings.begin(), *flat);
+    warnings.insert(warnings.begin(), *flat);
   }
+  if (const auto slow = step_warning(scene, placed)) warnings.push_back(*slow);
+  warnings.insert(warnings.end(), placed.notes.remarks.begin(), placed.notes.remarks.end());
   return placed;
 }
 

@@ -20,6 +20,7 @@ struct PlacedBody {
   Vec3 low = Vec3::Zero();          // bounding box [m]
   Vec3 high = Vec3::Zero();
   Index first_node = 0;  // of the body in the Model
+  io::ReadNotes notes;   // of the file: where its labels come from
   std::vector<std::string> warnings;
 
   double diagonal() const { return (high - low).norm(); }

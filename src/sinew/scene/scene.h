@@ -14,6 +14,7 @@
 #include "sinew/base/error.h"
 #include "sinew/base/vec.h"
 #include "sinew/base/words.h"
+#include "sinew/io/mesh_notes.h"
 #include "sinew/io/vtu.h"
 #include "sinew/model/material.h"
 #include "sinew/model/path.h"
@@ -97,6 +98,8 @@ struct SceneBody {
   std::string name;
   // Source of the mesh: a file or a shape.
   std::string mesh;                   // path, relative to the scene file; empty: a shape
+  io::LabelNames labels;              // arrays of the file that hold the labels; empty: by the rule
+  bool repair = false;                // merge double nodes, remove flat tets (mesh/mend.h)
   double mesh_size = 0.0;             // of surfaces and images: mean edge [m]; 0: sinew-mesh's
   std::optional<Vec3> fit;            // sides of the box that the file is stretched to, each
                                       // axis by itself, from 0 on [mesh unit]; absent: unchanged
