@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <limits>
 #include <memory>
 #include <utility>
@@ -15,22 +14,6 @@
 
 namespace sinew::io {
 namespace {
-
-// VTK writes an array's name with %XX for blanks and the like.
-std::string decoded_name(std::string_view name) {
-  std::string text;
-  for (std::size_t i = 0; i < name.size(); ++i) {
-    unsigned value = 0;
-    if (name[i] == '%' && i + 2 < name.size() &&
-        std::from_chars(&name[i + 1], &name[i + 1] + 2, value, 16).ptr == &name[i + 1] + 2) {
-      text += static_cast<char>(static_cast<unsigned char>(value));
-      i += 2;
-    } else {
-      text += name[i];
-    }
-  }
-  return text;
-}
 
 class VtkParser {
  public:

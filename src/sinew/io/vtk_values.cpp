@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <charconv>
 #include <limits>
 
 namespace sinew::io {
@@ -48,6 +49,21 @@ std::size_t scalar_bytes(Scalar type) {
 }
 
 }  // namespace
+
+std::string decoded_name(std::string_view name) {
+  std::string text;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    unsigned value = 0;
+    if (name[i] == '%' && i + 2 < name.size() &&
+        std::from_chars(&name[i + 1], &name[i + 1] + 2, value, 16).ptr == &name[i + 1] + 2) {
+      text += static_cast<char>(static_cast<unsigned char>(value));
+      i += 2;
+    } else {
+      text += name[i];
+    }
+  }
+  return text;
+}
 
 bool same_word(std::string_view a, std::string_view upper) {
   return std::equal(a.begin(), a.end(), upper.begin(), upper.end(), [](char x, char y) {

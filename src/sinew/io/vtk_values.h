@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include "sinew/io/value_reader.h"
@@ -13,6 +14,9 @@ enum class Scalar { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64, bit };
 
 // Whether `a` equals this upper-case word; VTK ignores the case of its keywords.
 bool same_word(std::string_view a, std::string_view upper);
+
+// VTK writes an array's name with %XX for blanks and the like.
+std::string decoded_name(std::string_view name);
 
 class VtkValues {
  public:

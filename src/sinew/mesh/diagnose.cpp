@@ -11,6 +11,7 @@
 #include "sinew/base/error.h"
 #include "sinew/mesh/doubles.h"
 #include "sinew/mesh/faces.h"
+#include "sinew/mesh/pinches.h"
 #include "sinew/mesh/quality.h"
 #include "sinew/mesh/surface.h"
 
@@ -63,7 +64,6 @@ class Doctor {
   void check_tets();
   void check_faces();
   void check_surface(const FaceTable& faces, std::span<const Tet> tets);
-  void check_vertices(std::span<const Triangle> triangles);
   void check_nodes();
   void check_components();
   void set_places(Problem& problem) const;
@@ -264,69 +264,18 @@ void Doctor::check_faces() {
 
 void Doctor::check_surface(const FaceTable& faces, std::span<const Tet> tets) {
   std::vector<Triangle> triangles;
-  std::vector<Edge> edges;
   for (Index f = 0; f < faces.face_count(); ++f) {
     const auto sides = faces.sides_of(f);
-    if (sides.size() != 1) continue;
-    triangles.push_back(outward_face(tets, sides[0]));
-    const auto& [a, b, c] = faces.faces[uz(f)];
-    edges.insert(edges.end(), {{a, b}, {a, c}, {b, c}});
+    if (sides.size() == 1) triangles.push_back(outward_face(tets, sides[0]));
   }
-  std::sort(edges.begin(), edges.end());
-  Finds finds;
-  for (auto edge = edges.begin(); edge != edges.end();) {
-    const auto next = std::find_if(edge, edges.end(), [&](const Edge& e) { return e != *edge; });
-    if (next - edge > 2) finds.add({edge->begin(), edge->end()});
-    edge = next;
-  }
-  report(ProblemKind::non_manifold_edge, Severity::warning, finds, "non-manifold edge",
+  Finds edges, nodes;
+  for (const auto& [a, b] : non_manifold_edges(triangles)) edges.add({a, b});
+  for (const Index node : non_manifold_nodes(triangles)) nodes.add({node});
+  report(ProblemKind::non_manifold_edge, Severity::warning, edges, "non-manifold edge",
          "non-manifold edges",
          "the surface touches itself along it, so parts turn about it like a hinge",
          "none needed; a finer mesh may part or join them");
-  check_vertices(triangles);
-}
-
-// If the surface triangles at a node do not form one fan, the surface touches itself there.
-void Doctor::check_vertices(std::span<const Triangle> triangles) {
-  struct Spoke {  // the triangle at `node` that holds the edge to `other`
-    Index node, other, triangle;
-    auto operator<=>(const Spoke&) const = default;
-  };
-  std::vector<Spoke> spokes;
-  spokes.reserve(6 * triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (const Index node : triangles[t]) {
-      for (const Index other : triangles[t]) {
-        if (other != node) spokes.push_back({node, other, static_cast<Index>(t)});
-      }
-    }
-  }
-  std::sort(spokes.begin(), spokes.end());
-
-  Finds finds;
-  for (auto begin = spokes.begin(); begin != spokes.end();) {
-    const auto end =
-        std::find_if(begin, spokes.end(), [&](const Spoke& s) { return s.node != begin->node; });
-    // Each triangle is an edge between its two spokes' other ends: count the connected sets.
-    std::vector<Index> ends;
-    for (auto s = begin; s != end; ++s) {
-      if (ends.empty() || ends.back() != s->other) ends.push_back(s->other);
-    }
-    const auto local = [&](Index node) {
-      return static_cast<Index>(std::lower_bound(ends.begin(), ends.end(), node) - ends.begin());
-    };
-    std::vector<Triangle> links;
-    for (auto s = begin; s != end; ++s) {
-      for (const Index third : triangles[uz(s->triangle)]) {
-        if (third != begin->node) links.push_back({local(s->other), local(third), local(third)});
-      }
-    }
-    if (connected_components(links, static_cast<Index>(ends.size())).count > 1) {
-      finds.add({begin->node});
-    }
-    begin = end;
-  }
-  report(ProblemKind::non_manifold_vertex, Severity::warning, finds, "non-manifold node",
+  report(ProblemKind::non_manifold_vertex, Severity::warning, nodes, "non-manifold node",
          "non-manifold nodes",
          "the surface touches itself there, so parts turn about it like a joint",
          "none needed; a finer mesh may part or join them");
