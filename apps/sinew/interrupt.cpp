@@ -6,6 +6,8 @@
 #include <csignal>
 #include <utility>
 
+#include "sinew/scene/filled.h"
+
 namespace {
 
 std::atomic<bool> stop_requested{false};
@@ -16,6 +18,7 @@ extern "C" void request_stop(int signal_number) {
 }
 
 extern "C" void end_now(int) {
+  sinew::end_meshers();
   _exit(interrupted);
 }
 

@@ -18,6 +18,7 @@
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/scene/around.h"
+#include "sinew/scene/filled.h"
 #include "sinew/server/server.h"
 
 using namespace sinew;
@@ -70,6 +71,7 @@ class StopOnSignal {
           while (!token.stop_requested()) {
             if (sigtimedwait(&signals, nullptr, &a_moment) < 0) continue;
             server::Server* const server = server_.load();
+            end_meshers();
             if (server == nullptr) _exit(interrupted);
             server->stop();
             constexpr int moments = 7;  // time to say goodbye to the browsers

@@ -264,6 +264,30 @@ class InterruptTest(CliTest):
                 # 0.2 s on an idle machine; tests share theirs.
                 self.assertLess(self.interrupted(args, after), 2.0)
 
+    def test_the_mesher_ends_too(self):
+        mesher = self.write("mesher", "#!/bin/sh\necho $$ > id\nexec sleep 60\n")
+        mesher.chmod(0o755)
+        self.write("a.off", "OFF\n0 0 0\n")
+        scene = self.write("s.toml", "[body.a]\nmesh = \"a.off\"\n")
+        env = {**os.environ, "SINEW_MESH": str(mesher), "XDG_CACHE_HOME": str(self.dir / "cache")}
+        for command in (["run", str(scene), "--no-output"], ["view", str(scene), "--port", "0"]):
+            with self.subTest(command=command):
+                run = subprocess.Popen([BIN, *command], cwd=self.dir, env=env,
+                                       stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+                told = self.dir / "id"
+                while not (told.exists() and told.read_text(encoding="utf-8").endswith("\n")):
+                    self.assertIsNone(run.poll())
+                    time.sleep(0.02)
+                process = int(told.read_text(encoding="utf-8"))
+                told.unlink()
+                run.send_signal(signal.SIGINT)
+                self.assertEqual(run.wait(timeout=10), 130)
+                deadline = time.monotonic() + 10
+                while pathlib.Path(f"/proc/{process}/cmdline").exists() and \
+                        pathlib.Path(f"/proc/{process}/cmdline").read_bytes():
+                    self.assertLess(time.monotonic(), deadline, "the mesher goes on")
+                    time.sleep(0.02)
+
 
 if __name__ == "__main__":
     unittest.main()

@@ -8,7 +8,9 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cerrno>
+#include <csignal>
 #include <cstdlib>
 #include <iterator>
 #include <system_error>
@@ -53,6 +55,48 @@ std::string mesher() {
   return "sinew-mesh";
 }
 
+// The programs that run(), in any thread, waits for; 0: a free place.
+std::array<std::atomic<pid_t>, 16> children{};
+static_assert(std::atomic<pid_t>::is_always_lock_free);  // a signal handler reads them
+
+// Lists a child while its id is its own: not beyond the wait for its end.
+class Listed {
+ public:
+  explicit Listed(pid_t child) {
+    for (std::atomic<pid_t>& place : children) {
+      pid_t free = 0;
+      if (!place.compare_exchange_strong(free, child)) continue;
+      place_ = &place;
+      return;
+    }
+  }
+  Listed(const Listed&) = delete;
+  Listed& operator=(const Listed&) = delete;
+  ~Listed() {
+    if (place_ != nullptr) place_->store(0);
+  }
+
+ private:
+  std::atomic<pid_t>* place_ = nullptr;
+};
+
+// Starts a program that hears signals, also where this thread does not. Returns an errno.
+int spawn(const std::vector<std::string>& command, const posix_spawn_file_actions_t& actions,
+          pid_t& child) {
+  std::vector<char*> words;
+  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  sigset_t none;
+  sigemptyset(&none);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  const int failure = posix_spawnp(&child, words[0], &actions, &attributes, words.data(), environ);
+  posix_spawnattr_destroy(&attributes);
+  return failure;
+}
+
 // Runs a program and waits. Returns its exit code, or a negative errno if it could not be started;
 // `told` receives its standard error.
 int run(const std::vector<std::string>& command, std::string& told) {
@@ -63,19 +107,19 @@ int run(const std::vector<std::string>& command, std::string& told) {
   posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], STDERR_FILENO);
-  std::vector<char*> words;
-  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
-  words.push_back(nullptr);
   pid_t child = 0;
-  const int failure = posix_spawnp(&child, words[0], &actions, nullptr, words.data(), environ);
+  const int failure = spawn(command, actions, child);
   posix_spawn_file_actions_destroy(&actions);
   close(pipe_ends[1]);
-  std::array<char, 512> buffer{};
-  ssize_t got = 0;
-  while (failure == 0 && ((got = read(pipe_ends[0], buffer.data(), buffer.size())) > 0 ||
-                          (got < 0 && errno == EINTR))) {
-    if (got > 0 && told.size() < longest_message) {
-      told.append(buffer.data(), static_cast<std::size_t>(got));
+  if (failure == 0) {
+    const Listed listed(child);
+    std::array<char, 512> buffer{};
+    ssize_t got = 0;
+    while ((got = read(pipe_ends[0], buffer.data(), buffer.size())) > 0 ||
+           (got < 0 && errno == EINTR)) {
+      if (got > 0 && told.size() < longest_message) {
+        told.append(buffer.data(), static_cast<std::size_t>(got));
+      }
     }
   }
   close(pipe_ends[0]);
@@ -154,6 +198,11 @@ struct Removed {
 };
 
 }  // namespace
+
+void end_meshers() noexcept {
+  for (const std::atomic<pid_t>& child : children)
+    if (const pid_t id = child.load(); id > 0) kill(id, SIGTERM);
+}
 
 bool is_filled(const fs::path& path) {
   return io::is_image_name(path) || io::is_surface_name(path);

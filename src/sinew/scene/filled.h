@@ -29,6 +29,9 @@ void fit_to(std::vector<Vec3>& points, const Vec3& sides, const Location& where)
 TetMesh read_filled(const std::filesystem::path& path, double size, const Location& where,
                     const std::optional<Vec3>& fit = {});
 
+// Sends SIGTERM to the sinew-mesh programs that this process waits for. For signal handlers, too.
+void end_meshers() noexcept;
+
 // The vertices of a surface in the order of its file, stretched to `fit`.
 std::vector<Vec3> surface_vertices(const std::filesystem::path& path,
                                    const std::optional<Vec3>& fit, const Location& where);
