@@ -8,7 +8,7 @@ namespace sinew {
 namespace {
 
 // The warnings about the start of a box of 0.1 m around the origin.
-std::vector<std::string> warnings(const std::string& more, const std::string& body = "") {
+std::vector<std::string> told_at_start(const std::string& more, const std::string& body = "") {
   const Scene scene = parse_scene(
       "[body.b]\nshape = \"box\"\ncells = [3, 3, 3]\nsize = [0.1, 0.1, 0.1]\n" + body + more,
       "b.toml", {});
@@ -23,26 +23,27 @@ void expect_one(const std::vector<std::string>& said, const std::string& part) {
 }
 
 TEST(StartWarnings, ABodyInsideAnObstacleOrBelowTheGround) {
-  expect_one(warnings("[obstacle.o]\nshape = \"box\"\nsize = [1, 1, 1]\ncenter = [0, 0, 0]\n"),
+  expect_one(told_at_start("[obstacle.o]\nshape = \"box\"\nsize = [1, 1, 1]\ncenter = [0, 0, 0]\n"),
              "body b starts inside obstacle o: 64 of its 64 nodes");
-  expect_one(warnings("[ground]\npoint = [0, 10, 0]\n"), "body b starts below the ground");
-  EXPECT_TRUE(warnings("[ground]\npoint = [0, -0.05, 0]\n").empty());  // lies on it
+  expect_one(told_at_start("[ground]\npoint = [0, 10, 0]\n"), "body b starts below the ground");
+  EXPECT_TRUE(told_at_start("[ground]\npoint = [0, -0.05, 0]\n").empty());  // lies on it
 }
 
 TEST(StartWarnings, BodiesInTheSamePlace) {
   const std::string c =
       "[contact]\n[body.c]\nshape = \"box\"\ncells = [3, 3, 3]\nsize = [0.1, 0.1, 0.1]\n";
-  expect_one(warnings(c), "overlap at the start");
-  EXPECT_TRUE(warnings(c + "position = [0.1, 0, 0]\n").empty());  // flush
-  EXPECT_TRUE(warnings(c + "position = [0.3, 0, 0]\n").empty());
+  expect_one(told_at_start(c), "overlap at the start");
+  EXPECT_TRUE(told_at_start(c + "position = [0.1, 0, 0]\n").empty());  // flush
+  EXPECT_TRUE(told_at_start(c + "position = [0.3, 0, 0]\n").empty());
 }
 
 TEST(StartWarnings, PinsThatJump) {
   const std::string pin = "[pin.a]\nselect = { side = \"-x\" }\npath = ";
-  expect_one(warnings(pin + "[{ time = 0 }, { time = 1e-9, move = [1, 0, 0] }]\n"),
+  expect_one(told_at_start(pin + "[{ time = 0 }, { time = 1e-9, move = [1, 0, 0] }]\n"),
              "pin a jumps at 0 s: it moves 1 m in 1e-09 s");
-  expect_one(warnings(pin + "[{ time = 0, move = [0.1, 0, 0] }]\n"), "pin a jumps at the start");
-  EXPECT_TRUE(warnings(pin + "[{ time = 0 }, { time = 1, move = [1, 0, 0] }]\n").empty());
+  expect_one(told_at_start(pin + "[{ time = 0, move = [0.1, 0, 0] }]\n"),
+             "pin a jumps at the start");
+  EXPECT_TRUE(told_at_start(pin + "[{ time = 0 }, { time = 1, move = [1, 0, 0] }]\n").empty());
 }
 
 TEST(StartWarnings, DistancesThatDoNotHold) {
@@ -50,10 +51,10 @@ TEST(StartWarnings, DistancesThatDoNotHold) {
       "[distance.d]\nselect = { nearest = [0.05, 0.05, 0.05] }\n"
       "point = [0.05, 0.25, 0.05]\nlength = ";
   const std::string pin = "[pin.a]\nselect = { all = true }\n";
-  expect_one(warnings(pin + d + "0.1\n"), "distance d cannot hold");
-  expect_one(warnings(d + "0.1\n"), "distance d jumps at the start");
-  EXPECT_TRUE(warnings(pin + d + "0.2\n").empty());
-  EXPECT_TRUE(warnings(pin + d + "0.3\nrope = true\n").empty());
+  expect_one(told_at_start(pin + d + "0.1\n"), "distance d cannot hold");
+  expect_one(told_at_start(d + "0.1\n"), "distance d jumps at the start");
+  EXPECT_TRUE(told_at_start(pin + d + "0.2\n").empty());
+  EXPECT_TRUE(told_at_start(pin + d + "0.3\nrope = true\n").empty());
 }
 
 }  // namespace

@@ -7,7 +7,8 @@
 namespace sinew {
 namespace {
 
-constexpr double a_day = 86400.0;  // [s]
+constexpr double a_day = 86400.0;       // [s]
+constexpr double five_minutes = 300.0;  // [s]
 // The cost of a step in evaluations of the forces: an explicit one with its estimates of the stable
 // step; of an implicit one a small number of Newton steps.
 constexpr double explicit_step = 1.3;
@@ -30,15 +31,35 @@ double cost_of_step(sim::World& world) {
 }
 
 std::string time_text(double seconds) {
+  constexpr double an_hour = 3600.0;
   constexpr double a_year = 365.0 * a_day;
+  if (seconds < 2.0 * an_hour) return fmt::format("{:.3g} minutes", seconds / 60.0);
+  if (seconds < 2.0 * a_day) return fmt::format("{:.3g} hours", seconds / an_hour);
   return seconds < 2.0 * a_year ? fmt::format("{:.3g} days", seconds / a_day)
                                 : fmt::format("{:.3g} years", seconds / a_year);
 }
 
+// The bad tet that makes the steps short; null: something else does.
+const ShortStep* bad_tet(const sim::World& world) {
+  constexpr double much = 0.1;  // of its wave time: steps below are short for another reason
+  if (world.scene().dt || world.run().stepper != StepperKind::verlet) return nullptr;
+  const ShortStep* worst = nullptr;
+  for (const BuildReport::Body& body : world.report().bodies)
+    if (body.short_step && (worst == nullptr || body.short_step->wave_time < worst->wave_time))
+      worst = &*body.short_step;
+  return worst != nullptr && world.run().target_step > much * worst->wave_time ? worst : nullptr;
+}
+
+// The reason of the steps' length, and the remedy.
 std::string reason(const sim::World& world) {
-  if (world.scene().dt) return "the scene gives this step";
+  if (const ShortStep* bad = bad_tet(world)) return bad->reason;
   const std::string& by = world.stepping().limited_by();
-  return by.empty() ? "the stable step allows no longer one" : by;
+  return fmt::format(
+      "{}; take a longer step, a softer material, a coarser or better mesh (sinew info), or a "
+      "shorter duration",
+      world.scene().dt ? "the scene gives this step"
+      : by.empty()     ? "the stable step allows no longer one"
+                       : by);
 }
 
 }  // namespace
@@ -50,12 +71,10 @@ double estimate_cost(sim::World& world) {
 
 std::optional<std::string> cost_warning(sim::World& world) {
   const double cost = estimate_cost(world);
-  if (!(cost > a_day)) return std::nullopt;
+  if (!(cost > (bad_tet(world) != nullptr ? five_minutes : a_day))) return std::nullopt;
   const double steps = steps_left(world);
-  return fmt::format(
-      "this run would take about {}: {:.3g} steps of {:.3g} s at {:.2g} s each; {}; take a longer "
-      "step, a softer material, a coarser or better mesh (sinew info), or a shorter duration",
-      time_text(cost), steps, world.run().target_step, cost / steps, reason(world));
+  return fmt::format("this run would take about {}: {:.3g} steps of {:.3g} s at {:.2g} s each; {}",
+                     time_text(cost), steps, world.run().target_step, cost / steps, reason(world));
 }
 
 }  // namespace sinew

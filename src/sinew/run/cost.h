@@ -12,7 +12,8 @@ namespace sinew {
 // evaluation of the forces; 0 for rest states. Contacts and output come on top.
 double estimate_cost(sim::World& world);
 
-// A sentence with the estimate and its reason if it is more than a day.
+// A sentence with the estimate, its reason and the remedy, if it is more than a day; or more than
+// five minutes because of one bad tet (scene/short_step.h).
 std::optional<std::string> cost_warning(sim::World& world);
 
 }  // namespace sinew

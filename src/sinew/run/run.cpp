@@ -69,10 +69,10 @@ class Runner {
     }
     if (!options_.out.empty()) {
       if (!resumed_) {
-        folder_.emplace(
-            RunFolder::make(options_.out, options_.force,
-                            files_of(world_.scene(), world_.model(), world_.controls()),
-                            inputs_of(world_.scene()), document_with_base(world_.scene())));
+        folder_.emplace(RunFolder::make(options_.out, options_.force,
+                                        files_of(world_.scene(), world_.model(), world_.controls()),
+                                        inputs_of(world_.scene()),
+                                        document_with_base(world_.scene())));
       }
       recorder_.emplace(world_.scene(), world_.model(), options_.out, run_);
     }

@@ -146,7 +146,7 @@ std::vector<PlacedBody> add_bodies(const Scene& scene, Model& model, BuildReport
     check_finite(model, body);
     if (report != nullptr)
       report->bodies.push_back({body.name, placed.source, placed.mesh.node_count(),
-                                placed.mesh.tet_count(), placed.warnings});
+                                placed.mesh.tet_count(), placed.warnings, placed.short_step});
     bodies.push_back(std::move(placed));
   }
   set_start(bodies, model);

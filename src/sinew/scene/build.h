@@ -1,11 +1,13 @@
 // Builds a Model from a scene: reads and places meshes, makes springs, selects nodes.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sinew/model/model.h"
 #include "sinew/scene/scene.h"
+#include "sinew/scene/short_step.h"
 
 namespace sinew {
 
@@ -16,7 +18,8 @@ struct BuildReport {
     std::string mesh;  // the file, or "shape beam"
     Index nodes = 0;
     Index tets = 0;
-    std::vector<std::string> warnings;  // repairs; implausible sizes
+    std::vector<std::string> warnings;  // implausible sizes, loose parts, repairs
+    std::optional<ShortStep> short_step;
   };
   std::vector<Body> bodies;
   std::vector<std::string> warnings;  // about the start (scene/start_warnings.h), distances

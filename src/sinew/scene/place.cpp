@@ -16,7 +16,6 @@
 #include "sinew/scene/filled.h"
 #include "sinew/scene/keys.h"
 #include "sinew/scene/nearest_node.h"
-#include "sinew/scene/step_cost.h"
 #include "sinew/scene/weight.h"
 
 namespace sinew {
@@ -114,9 +113,12 @@ void make_sound(PlacedBody& placed) {
     if (is_file) throw;
     throw Error(error.kind(), error.message(), error.remedy(), placed.body->mesh_where);
   }
-  for (const Problem& problem : report.found.problems)
-    placed.warnings.push_back(problem.severity == Severity::repairable ? "repaired: " + problem.text
-                                                                       : problem.text);
+  for (const Problem& problem : report.found.problems) {
+    const bool repaired = problem.severity == Severity::repairable;
+    const bool loose = problem.kind == ProblemKind::components;  // the parts fall apart: said first
+    placed.warnings.insert(loose ? placed.warnings.begin() : placed.warnings.end(),
+                           repaired ? "repaired: " + problem.text : problem.text);
+  }
   placed.node_of_file.assign(in_file, -1);
   for (std::size_t i = 0; i < report.original_node.size(); ++i)
     placed.node_of_file[static_cast<std::size_t>(report.original_node[i])] = static_cast<Index>(i);
@@ -218,8 +220,8 @@ PlacedBody place(const Scene& scene, const SceneBody& body) {
   } else if (const auto flat = weight_warning(scene, placed)) {
     warnings.insert(warnings.begin(), *flat);
   }
-  if (const auto slow = step_warning(scene, placed)) warnings.push_back(*slow);
   warnings.insert(warnings.end(), placed.notes.remarks.begin(), placed.notes.remarks.end());
+  placed.short_step = find_short_step(placed);
   return placed;
 }
 

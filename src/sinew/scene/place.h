@@ -1,11 +1,13 @@
 // One body of a scene: its mesh is read or made, repaired, scaled and placed in the world.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "sinew/mesh/tet_mesh.h"
 #include "sinew/scene/scene.h"
+#include "sinew/scene/short_step.h"
 
 namespace sinew {
 
@@ -19,9 +21,10 @@ struct PlacedBody {
                                     // -1: in no tet, left out
   Vec3 low = Vec3::Zero();          // bounding box [m]
   Vec3 high = Vec3::Zero();
-  Index first_node = 0;  // of the body in the Model
-  io::ReadNotes notes;   // of the file: where its labels come from
-  std::vector<std::string> warnings;
+  Index first_node = 0;               // of the body in the Model
+  io::ReadNotes notes;                // of the file: where its labels come from
+  std::vector<std::string> warnings;  // unit and weight, then loose parts, then the rest
+  std::optional<ShortStep> short_step;
 
   double diagonal() const { return (high - low).norm(); }
 };

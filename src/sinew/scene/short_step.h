@@ -1,16 +1,21 @@
-// The cost of explicit steps on a mesh with bad tets, before the run.
+// A bad tet that makes the explicit steps of a body much shorter than its other tets do.
 #pragma once
 
 #include <optional>
 #include <string>
 
-#include "sinew/scene/place.h"
-
 namespace sinew {
 
-// One line if the body's worst tet makes explicit steps much shorter than its other tets do: names
-// the tet, its radius ratio, the steps, the number of them, the wall time, and the remedy. Nothing
-// for steps of another kind, and if the run is short anyway.
-std::optional<std::string> step_warning(const Scene& scene, const PlacedBody& placed);
+struct PlacedBody;
+
+struct ShortStep {
+  double wave_time = 0.0;  // of pressure waves through the tet [s]
+  std::string reason;      // names it, and the remedy
+};
+
+// The body's worst tet, if it is near-flat (mesh/doctor.h) and the waves through it need much less
+// time than those through the median tet: its name with radius ratio and place, about what the
+// steps would be without it, the remedy. Nothing for a body with the uniform law.
+std::optional<ShortStep> find_short_step(const PlacedBody& placed);
 
 }  // namespace sinew
