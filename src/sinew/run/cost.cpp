@@ -7,8 +7,8 @@
 namespace sinew {
 namespace {
 
-constexpr double a_day = 86400.0;       // [s]
-constexpr double five_minutes = 300.0;  // [s]
+constexpr double a_day = 86400.0;  // [s]
+constexpr double a_while = 10.0;   // [s]
 // The cost of a step in evaluations of the forces: an explicit one with its estimates of the stable
 // step; of an implicit one a small number of Newton steps.
 constexpr double explicit_step = 1.3;
@@ -33,6 +33,7 @@ double cost_of_step(sim::World& world) {
 std::string time_text(double seconds) {
   constexpr double an_hour = 3600.0;
   constexpr double a_year = 365.0 * a_day;
+  if (seconds < 120.0) return fmt::format("{:.2g} s", seconds);
   if (seconds < 2.0 * an_hour) return fmt::format("{:.3g} minutes", seconds / 60.0);
   if (seconds < 2.0 * a_day) return fmt::format("{:.3g} hours", seconds / an_hour);
   return seconds < 2.0 * a_year ? fmt::format("{:.3g} days", seconds / a_day)
@@ -71,7 +72,7 @@ double estimate_cost(sim::World& world) {
 
 std::optional<std::string> cost_warning(sim::World& world) {
   const double cost = estimate_cost(world);
-  if (!(cost > (bad_tet(world) != nullptr ? five_minutes : a_day))) return std::nullopt;
+  if (!(cost > (bad_tet(world) != nullptr ? a_while : a_day))) return std::nullopt;
   const double steps = steps_left(world);
   return fmt::format("this run would take about {}: {:.3g} steps of {:.3g} s at {:.2g} s each; {}",
                      time_text(cost), steps, world.run().target_step, cost / steps, reason(world));

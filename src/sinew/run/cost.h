@@ -13,7 +13,7 @@ namespace sinew {
 double estimate_cost(sim::World& world);
 
 // A sentence with the estimate, its reason and the remedy, if it is more than a day; or more than
-// five minutes because of one bad tet (scene/short_step.h).
+// ten seconds because of one bad tet (scene/short_step.h).
 std::optional<std::string> cost_warning(sim::World& world);
 
 }  // namespace sinew
