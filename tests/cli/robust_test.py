@@ -197,7 +197,7 @@ class CasesTest(CliTest):
                                 "dt=1e-12"], cwd=self.dir, stderr=subprocess.PIPE, text=True,
                                stdout=subprocess.DEVNULL)
         line = run.stderr.readline()
-        while "would take about" not in line:
+        while "would take at least" not in line:
             self.assertTrue(line)
             line = run.stderr.readline()
         run.send_signal(signal.SIGINT)
@@ -239,7 +239,7 @@ class CasesTest(CliTest):
                 r = self.run_sinew("run", scene, "--no-output", "-q", "--json", "--set",
                                    "duration=0.05", code=None)
                 for text in json.loads(r.stdout)["warnings"]:
-                    for fault in (" starts ", "jumps", "cannot hold", "would take about"):
+                    for fault in (" starts ", "jumps", "cannot hold", "would take at least"):
                         self.assertNotIn(fault, text)
 
 

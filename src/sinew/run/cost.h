@@ -9,11 +9,12 @@
 namespace sinew {
 
 // Wall time that the rest of a run takes [s], from the count of its steps and one measured
-// evaluation of the forces; 0 for rest states. Contacts and output come on top.
+// evaluation of the forces; 0 for rest states. Contacts and output come on top,
+// and steps that get shorter.
 double estimate_cost(sim::World& world);
 
 // A sentence with the estimate, its reason and the remedy, if it is more than a day; or more than
-// ten seconds because of one bad tet (scene/short_step.h).
+// a second because of one bad tet (scene/short_step.h).
 std::optional<std::string> cost_warning(sim::World& world);
 
 }  // namespace sinew
