@@ -19,7 +19,7 @@ TEST(MeanEdge, OfTetsOrElseOfSpringsOrElseZero) {
   EXPECT_DOUBLE_EQ(mean_edge(m), 0.2);
   m.tets = {{0, 1, 2, 3}, {1, 2, 3, 4}};
   m.rest_volume = {1e-6, 3e-6};
-  EXPECT_EQ(mean_edge(m), regular_tet_edge(2e-6));
+  EXPECT_DOUBLE_EQ(mean_edge(m), regular_tet_edge(2e-6));
 }
 
 }  // namespace
