@@ -9,8 +9,8 @@
 namespace sinew {
 
 // Wall time that the rest of a run takes [s], from the count of its steps and one measured
-// evaluation of the forces; 0 for rest states. Contacts and output come on top,
-// and steps that get shorter.
+// evaluation of the forces; 0 for rest states. Contacts, output and steps that get shorter
+// come on top.
 double estimate_cost(sim::World& world);
 
 // A sentence with the estimate, its reason and the remedy, if it is more than a day; or more than
