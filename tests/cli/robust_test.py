@@ -104,8 +104,8 @@ class ResumeTest(RunFolderTest):
         scene.write_text('stepper = "implicit"\ntolerance = 1e-4\n'
                          + scene.read_text(encoding="utf-8"), encoding="utf-8")
         r = self.run_sinew("resume", "o", code=INPUT)
-        for text in ("body.beam.poisson was 0.3, is now 0.4", "stepper was nothing, is now "
-                     '"implicit"', "tolerance was nothing, is now 0.0001"):
+        for text in ("body.beam.poisson was 0.3, is now 0.4", "stepper was not given, is now "
+                     '"implicit"', "tolerance was not given, is now 0.0001"):
             self.assertIn(text, r.stderr)
         after = self.files()
         del before["o/scene.toml"], before["o/run.lock"], after["o/scene.toml"], after["o/run.lock"]

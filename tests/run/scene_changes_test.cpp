@@ -18,7 +18,7 @@ TEST(SceneChanges, NamesEveryKeyWithItsValues) {
   EXPECT_EQ(changes[0].before, "2");
   EXPECT_EQ(changes[0].after, "3");
   EXPECT_EQ(changes[1].key, "body.box.young");
-  EXPECT_EQ(changes[1].after, "nothing");
+  EXPECT_EQ(changes[1].after, "not given");
   EXPECT_EQ(changes[2].key, "duration");
   EXPECT_EQ(changes[3].key, "body.box.poisson");
 }

@@ -14,7 +14,7 @@
 namespace sinew {
 namespace {
 
-constexpr const char* nothing = "nothing";
+constexpr const char* nothing = "not given";
 
 using Values = std::map<std::string, const DocValue*>;
 

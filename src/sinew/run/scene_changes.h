@@ -10,7 +10,7 @@ namespace sinew {
 
 struct SceneChange {
   std::string key;            // "output.fps", "body.beam.cells[2]"
-  std::string before, after;  // values as in the file; "nothing": the key is not there
+  std::string before, after;  // values as in the file; "not given": the key is not there
 };
 
 // The differences between two scenes as documents (Scene::document). A key with its default value
