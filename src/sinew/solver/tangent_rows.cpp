@@ -19,10 +19,9 @@ typedef float F8 __attribute__((vector_size(32)));
 
 // Two Float4 that follow each other, at an address that is aligned for one. (A pointer to a vector
 // type with a smaller alignment would lose it: GCC drops the attribute where `auto` deduces it.)
-SINEW_INLINE F8 load(const Float4* two) {
-  F8 v;
+// Not returned: without AVX the ABI has no place for an F8.
+SINEW_INLINE void load(const Float4* two, F8& v) {
   __builtin_memcpy(&v, two, sizeof(v));
-  return v;
 }
 
 SINEW_INLINE void cells_loop(const TangentRows& m, const Float4* u, Range cells, float* pressure) {
@@ -33,7 +32,9 @@ SINEW_INLINE void cells_loop(const TangentRows& m, const Float4* u, Range cells,
     for (; k + 1 < end; k += 2) {
       const F4 a = u[uz(m.cell_node[k])].lanes;
       const F4 b = u[uz(m.cell_node[k + 1])].lanes;
-      pairs += load(&m.gradient[k]) * __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+      F8 gradients;
+      load(&m.gradient[k], gradients);
+      pairs += gradients * __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
     }
     F4 sum = __builtin_shufflevector(pairs, pairs, 0, 1, 2, 3) +
              __builtin_shufflevector(pairs, pairs, 4, 5, 6, 7);
@@ -55,10 +56,13 @@ SINEW_INLINE double nodes_loop(const TangentRows& m, const Float4* u, const floa
       const F4 a = u[uz(m.near[e])].lanes;
       const F4 b = u[uz(m.near[e + 1])].lanes;
       const F8 d = owns - __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
-      const Float4* column = &m.near_block[3 * e];
-      pairs += (load(column) * __builtin_shufflevector(d, d, 0, 0, 0, 0, 4, 4, 4, 4) +
-                load(column + 2) * __builtin_shufflevector(d, d, 1, 1, 1, 1, 5, 5, 5, 5)) +
-               load(column + 4) * __builtin_shufflevector(d, d, 2, 2, 2, 2, 6, 6, 6, 6);
+      F8 x, y, z;  // columns of both blocks
+      load(&m.near_block[3 * e], x);
+      load(&m.near_block[3 * e + 2], y);
+      load(&m.near_block[3 * e + 4], z);
+      pairs += (x * __builtin_shufflevector(d, d, 0, 0, 0, 0, 4, 4, 4, 4) +
+                y * __builtin_shufflevector(d, d, 1, 1, 1, 1, 5, 5, 5, 5)) +
+               z * __builtin_shufflevector(d, d, 2, 2, 2, 2, 6, 6, 6, 6);
     }
     for (auto e = uz(m.far_start[n]); e < uz(m.far_start[n + 1]); e += 2) {
       const F4 a = u[uz(m.far[e])].lanes;
