@@ -117,13 +117,14 @@ std::string interventions(const Summary& s) {
   add(s.step_increases, "times longer");
   add(s.step_cuts, "cut in half");
   add(s.recovery_steps, "with inversion recovery");
-  add(s.peak_inverted_tets, "tets inverted at once", "at most ");
+  add(s.peak_inverted_tets,
+      s.peak_inverted_tets == 1 ? "tet inverted at once" : "tets inverted at once", "at most ");
   return text;
 }
 
 }  // namespace
 
-std::string format_table(const Summary& s) {
+std::string format_table(const Summary& s, std::span<const std::string> told) {
   std::string t;
   const auto row = [&](const char* name, const std::string& text) {
     t += fmt::format("  {:<12} {}\n", name, text);
@@ -184,6 +185,8 @@ std::string format_table(const Summary& s) {
   }
   row("state hash", s.state_hash);
   if (!s.look_for.empty()) t += fmt::format("\nLook for: {}\n", s.look_for);
-  for (const std::string& w : s.warnings) t += fmt::format("warning: {}\n", w);
+  for (const std::string& w : s.warnings) {
+    if (std::find(told.begin(), told.end(), w) == told.end()) t += fmt::format("warning: {}\n", w);
+  }
   return t;
 }

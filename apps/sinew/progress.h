@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <span>
 #include <string>
 
 #include "sinew/run/run.h"
@@ -22,5 +23,5 @@ class ProgressBar {
   std::chrono::steady_clock::time_point last_{};
 };
 
-// The table of a finished run.
-std::string format_table(const sinew::Summary& summary);
+// The table of a finished run, with its warnings except those `told` before.
+std::string format_table(const sinew::Summary& summary, std::span<const std::string> told);

@@ -6,6 +6,8 @@
 #include <atomic>
 #include <cstdio>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "commands.h"
 #include "framework_options.h"
@@ -87,7 +89,9 @@ int supervise(const RunArguments& a, const std::string& title, fs::path out, con
       fmt::print("stepper = \"auto\" takes {} ({})\n", word_of(stepper), reason);
     std::fflush(stdout);
   };
+  std::vector<std::string> told;  // warnings before the run
   options.on_warning = [&](const std::string& text) {
+    told.push_back(text);
     if (!a.quiet) fmt::print(stderr, "warning: {}\n", text);
   };
   const RunResult result = work(options);
@@ -95,7 +99,7 @@ int supervise(const RunArguments& a, const std::string& title, fs::path out, con
   if (a.json) {
     fmt::print("{}\n", to_json(result.summary).dump(2));
   } else if (!a.quiet) {
-    fmt::print("{}", format_table(result.summary));
+    fmt::print("{}", format_table(result.summary, told));
     print_next_steps(result, options.out);
   }
   std::fflush(stdout);

@@ -1,7 +1,6 @@
 // sinew view: the live view in the browser.
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <unistd.h>
 
 #include <atomic>
@@ -17,6 +16,7 @@
 #include "interrupt.h"
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
+#include "sinew/base/spawn.h"
 #include "sinew/scene/around.h"
 #include "sinew/scene/filled.h"
 #include "sinew/server/server.h"
@@ -88,29 +88,21 @@ class StopOnSignal {
 };
 
 // Asks the desktop to show the page. Without a desktop only the address is printed.
-void open_browser(std::string url) {
+void open_browser(const std::string& url) {
 #ifdef __APPLE__
-  std::string program = "open";
+  const std::string program = "open";
 #else
-  std::string program = "xdg-open";
+  const std::string program = "xdg-open";
 #endif
   posix_spawn_file_actions_t quiet;
   posix_spawn_file_actions_init(&quiet);
   posix_spawn_file_actions_addopen(&quiet, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_addopen(&quiet, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  char* const command[] = {program.data(), url.data(), nullptr};
   pid_t child = 0;
   std::signal(SIGCHLD, SIG_IGN);  // nobody waits for it
-  if (posix_spawnp(&child, program.c_str(), &quiet, &attributes, command, environ) != 0) {
+  if (spawn({program, url}, quiet, child) != 0) {
     fmt::print(stderr, "sinew: no {} here: open the address by hand\n", program);
   }
-  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&quiet);
 }
 

@@ -6,6 +6,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/io/pvd.h"
+#include "tests/support/folder.h"
 
 namespace sinew::io {
 namespace {
@@ -23,6 +24,14 @@ TEST(FileIo, WritingReplacesTheWholeFileAndLeavesNoOther) {
   EXPECT_THROW(write_file(folder, "x"), Error);
   EXPECT_THROW(write_file(folder / "missing" / "a", "x"), Error);
   fs::remove_all(folder);
+}
+
+TEST(FileIo, ADurableWriteReplacesTheFileAsAWhole) {
+  const test::Folder here;
+  write_durably(here.path() / "a", "one");
+  write_durably(here.path() / "a", "two");
+  EXPECT_EQ(read_file(here.path() / "a"), "two");
+  EXPECT_FALSE(std::filesystem::exists(here.path() / "a.new"));
 }
 
 }  // namespace

@@ -12,15 +12,23 @@ namespace {
 
 const char* text = "[body.box]\nshape = \"box\"\ncells = [2, 2, 2]\n";
 
-TEST(CheckpointFile, KeepsTheSceneAndTheState) {
+// A run of the box, saved in frame 7.
+class CheckpointFile : public testing::Test {
+ protected:
+  CheckpointFile() {
+    RunState run;
+    run.state = initial_state(model);
+    run.frame = 7;
+    write_run_checkpoint(file, scene.document, model.hash(), run);
+  }
+
   const test::Folder here;
-  const auto file = here.path() / "checkpoint.bin";
+  const std::filesystem::path file = here.path() / "checkpoint.bin";
   const Scene scene = parse_scene(text, "box.toml", {});
   const Model model = build_model(scene);
-  RunState run;
-  run.state = initial_state(model);
-  run.frame = 7;
-  write_run_checkpoint(file, scene.document, model.hash(), run);
+};
+
+TEST_F(CheckpointFile, KeepsTheSceneAndTheState) {
   const RunCheckpoint back = read_run_checkpoint(file);
   EXPECT_EQ(back.document, scene.document);
   EXPECT_EQ(state_of(back, file, model).frame, 7);
@@ -28,14 +36,7 @@ TEST(CheckpointFile, KeepsTheSceneAndTheState) {
   EXPECT_THROW(state_of(back, file, other), Error);
 }
 
-TEST(CheckpointFile, DamageIsRefused) {
-  const test::Folder here;
-  const auto file = here.path() / "checkpoint.bin";
-  const Scene scene = parse_scene(text, "box.toml", {});
-  const Model model = build_model(scene);
-  RunState run;
-  run.state = initial_state(model);
-  write_run_checkpoint(file, scene.document, model.hash(), run);
+TEST_F(CheckpointFile, DamageIsRefused) {
   const auto read = [&] { state_of(read_run_checkpoint(file), file, model); };
   EXPECT_NO_THROW(read());
   const std::string whole = io::read_file(file);

@@ -104,13 +104,5 @@ TEST(RunFolder, TheSystemsRefusalSaysWhich) {
   }
 }
 
-TEST(WriteDurably, ReplacesTheFileAsAWhole) {
-  const test::Folder here;
-  write_durably(here.path() / "a", "one");
-  write_durably(here.path() / "a", "two");
-  EXPECT_EQ(io::read_file(here.path() / "a"), "two");
-  EXPECT_FALSE(fs::exists(here.path() / "a.new"));
-}
-
 }  // namespace
 }  // namespace sinew

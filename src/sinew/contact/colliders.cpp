@@ -301,7 +301,7 @@ void find_collider_contacts(const Model& model, const Controls& controls,
     if (!obstacle.hard()) continue;
     std::visit(
         Overloaded{
-            [](const shapes::Mesh&) {},  // a surface: find_surfaces() has it
+            [](const shapes::Mesh&) {},  // found by find_surfaces()
             [&](const shapes::Plane& shape) { find_with_plane(shape, static_cast<Index>(o)); },
             [&](const SolidShape auto& shape) { find_with(shape, static_cast<Index>(o)); }},
         obstacle.shape);

@@ -15,7 +15,8 @@ namespace sinew {
 void build_skin(Model& model);
 
 // Contacts of a step from positions `from` at time t0 to `to` at time t1 [m] (nodes) with all hard
-// obstacles but meshes, where the controls have them, into `out` (which is cleared), sorted by id:
+// obstacles except meshes, at the poses that the controls give them. They are written to `out`
+// (which is cleared), sorted by id:
 //
 //   node against a shape: every node of the surface whose gap at `to` is below `reach` [m], and
 //     every node that entered or passed through the shape during the step, relative to the moving

@@ -26,10 +26,10 @@ class ContactFinder {
   // share a node.
   double explicit_reach() const { return explicit_reach_; }
 
-  // The find functions give the contacts of a step from positions `from` at time t0 to `to` at time
-  // t1 (nodes), with obstacles where the controls have them: places whose gap at `to` is below
-  // `reach` [m], and places that hit each other during the step. The contacts are sorted by id and
-  // depend on the model and the arguments only.
+  // The find functions return the contacts of a step from positions `from` at time t0 to `to` at
+  // time t1 (nodes), with obstacles at the poses that the controls give them: pairs whose gap at
+  // `to` is below `reach` [m], and pairs that touched during the step. The contacts are sorted by
+  // id and depend on the model and the arguments only.
   //
   // Contacts with obstacles that have a shape; `contacts` is cleared.
   void find_shapes(const Controls& controls, const std::vector<Vec3>& from,

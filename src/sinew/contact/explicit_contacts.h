@@ -31,8 +31,8 @@ class ExplicitContacts {
   // are measured at the predicted positions. If a contact of the step before is missing, the
   // contacts of its kind are found again at the predicted positions.
   //
-  // Adds work and losses to state.energy. Writes the contact forces to state.reactions, where the
-  // next step starts, and the forces of bodies on hard obstacles to state.obstacle_force.
+  // Adds work and losses to state.energy. Writes the contact forces to state.reactions, from
+  // which the next step starts, and the forces of bodies on hard obstacles to state.obstacle_force.
   ContactReport step(const Controls& controls, const std::vector<Vec3>& before,
                      const std::vector<Vec3>& force, double h, State& state);
 

@@ -29,7 +29,8 @@ void for_each_hard_plane(const Model& model, const Controls& controls, double ti
 }
 
 // Lifts free nodes of bodies at x [m] (nodes) that are below a hard plane onto it. Limits call this
-// between their sweeps, so that limits and planes both hold at the end. Returns how many it lifted.
+// between their sweeps, so that limits and planes both hold at the end. Returns the number of nodes
+// that it lifted.
 Index lift_onto_planes(const Model& model, const Controls& controls, double time,
                        std::vector<Vec3>& x);
 

@@ -49,8 +49,8 @@ void add_attachment(Model& model, Index a, Index b, double stiffness, double dam
 void add_distance(Model& model, Index a, Index b, double length, bool rope);
 
 // Derives inverse masses (0 for pinned nodes and anchors), the node -> spring lists, the colouring
-// of the limited springs and the nodes' shares of the surface. Throws Error(input) where a node is
-// held by two pins.
+// of the limited springs and the nodes' shares of the surface. Throws Error(input) if two pins hold
+// a node.
 void finish(Model& model);
 
 }  // namespace sinew

@@ -1,5 +1,5 @@
 // Soft spheres: soft obstacles and tools (model/controls.h), rigid and frictionless, that press on
-// the surface of bodies. Hard obstacles are contacts (contact/colliders.h); here they add nothing.
+// the surface of bodies. Hard obstacles are contacts (contact/colliders.h) and have no forces here.
 // docs/methods/obstacles.md.
 //
 // A surface node at x whose share of the surface area at rest is A is pushed out of the sphere of
@@ -44,8 +44,8 @@ inline Vec3 obstacle_stiffness_times(const Vec3& r, double radius, double stiffn
   return stiffness * (along - (radius / distance - 1.0) * (u - along));
 }
 
-// What soft spheres press: Model::surface_share. Call after the last add_body; does nothing where
-// it is there already.
+// Fills Model::surface_share, the area on which soft spheres press. Call after the last add_body;
+// does nothing if it is filled already.
 void build_surface_share(Model& model);
 
 // Adds the obstacle to the model. Call after the last add_body.
@@ -57,7 +57,7 @@ void add_obstacle(Model& model, Obstacle obstacle);
 void add_mesh_obstacle(Model& model, Obstacle obstacle, std::span<const Vec3> vertices,
                        std::span<const Triangle> triangles);
 
-// A soft obstacle or a tool as it is at a time.
+// A soft obstacle or a tool at a time.
 struct SoftSphere {
   Vec3 center = Vec3::Zero();  // [m]
   double radius = 0.0;         // [m]
@@ -76,11 +76,11 @@ struct ObstacleTerm {
 
   static double energy(const Configuration& at);
   static void add_forces(const Configuration& at, std::span<Vec3> forces);
-  // One for every node that a sphere presses.
+  // Visits one element for every node that a sphere presses.
   template <class F>
   static void for_each_element(const Configuration& at, Tangent tangent, const F& visit);
-  // Sum of k A of the spheres; 0 but on the surface. A step that is stable with it is stable
-  // whichever nodes the spheres come in contact with.
+  // Sum of k A of the spheres; 0 off the surface. A step that is stable with it is stable for any
+  // nodes that the spheres come to touch.
   static double most_stiffness(const Model& model, const Controls& controls, Index node) {
     if (uz(node) >= model.surface_share.size()) return 0.0;
     const double share = model.surface_share[uz(node)];
@@ -111,8 +111,8 @@ void ObstacleTerm::for_each_element(const Configuration& at, Tangent tangent, co
   }
 }
 
-// Calls f(node, r, force) for every node that the sphere presses at x [m] (nodes), rising: r from
-// its centre to the node [m], force on the node [N].
+// Calls f(node, r, force) for every node that the sphere presses at x [m] (nodes), in ascending
+// order: r from its centre to the node [m], force on the node [N].
 template <class F>
 void for_each_pressed(const Model& model, const SoftSphere& sphere, std::span<const Vec3> x,
                       const F& f) {
@@ -124,7 +124,7 @@ void for_each_pressed(const Model& model, const SoftSphere& sphere, std::span<co
   }
 }
 
-// What a sphere and the bodies do to each other.
+// The interaction of a sphere and the bodies.
 struct SoftReading {
   Vec3 force = Vec3::Zero();  // of the bodies on the sphere [N]
   double depth = 0.0;         // of the deepest node [m]
@@ -133,7 +133,7 @@ struct SoftReading {
 SoftReading read_soft_sphere(const Model& model, const SoftSphere& sphere, std::span<const Vec3> x);
 
 // Calls f(work) for every sphere that moves from the time `from` to `to` [s]: the force of the
-// bodies on it, as all is at `now`, times its displacement [J].
+// bodies on it in the configuration `now`, times its displacement [J].
 template <class F>
 void for_each_work_on_spheres(const Configuration& now, double from, double to, const F& f) {
   const auto at = [&](double time) { return soft_spheres(now.model, now.controls, time); };
@@ -147,7 +147,7 @@ void for_each_work_on_spheres(const Configuration& now, double from, double to, 
   }
 }
 
-// What an obstacle and the bodies do to each other.
+// The interaction of an obstacle and the bodies.
 struct ObstacleReading {
   std::string name;
   Vec3 center = Vec3::Zero();  // [m]
@@ -163,7 +163,7 @@ inline double against_travel(const ObstacleReading& reading) {
   return travel > 0.0 ? -reading.force.dot(reading.travel) / travel : 0.0;
 }
 
-// Name, centre and travel of all; force, depth and contacts of those that are soft.
+// Name, centre and travel of all obstacles; force, depth and contacts of the soft ones.
 std::vector<ObstacleReading> read_obstacles(const Configuration& at);
 
 }  // namespace sinew

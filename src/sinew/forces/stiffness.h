@@ -35,7 +35,7 @@ class TangentProduct {
 // viscosity and, with only_stiffening, the largest stiffness of bounded terms on a node.
 class OuterProduct {
  public:
-  // Everything has to outlive the object; `viscous_force` is scratch (slots).
+  // All arguments must outlive the object; `viscous_force` is scratch (slots).
   OuterProduct(const Configuration& at, double a, double b, std::span<const Vec3> u,
                Tangent tangent, std::vector<Vec3>& viscous_force);
   Vec3 of(Index node) const;
@@ -54,7 +54,7 @@ class OuterProduct {
 void add_term_products(const Configuration& at, Tangent tangent, double a, std::span<const Vec3> u,
                        std::span<Vec3> out);
 
-// The most that bounded terms stiffen the node [N/m].
+// The largest stiffness that bounded terms may add to the node [N/m].
 double most_stiffness(const Model& model, const Controls& controls, Index node);
 
 }  // namespace sinew

@@ -1,6 +1,8 @@
 #include "sinew/io/file_io.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
@@ -82,6 +84,26 @@ void write_file(const fs::path& path, std::string_view bytes) {
     fs::remove(temporary, ignored);
     fail_write(path, reason(failure));
   }
+}
+
+void sync_to_disk(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) fail_write(path, reason(errno));
+  const int code = ::fsync(file) == 0 ? 0 : errno;
+  ::close(file);
+  // Some file systems do not sync folders.
+  if (code != 0 && code != EINVAL && code != EROFS) fail_write(path, reason(code));
+}
+
+void write_durably(const fs::path& path, std::string_view bytes) {
+  fs::path fresh = path;
+  fresh += ".new";
+  write_file(fresh, bytes);
+  sync_to_disk(fresh);
+  std::error_code failed;
+  fs::rename(fresh, path, failed);
+  if (failed) fail_write(path, failed.message());
+  sync_to_disk(path.has_parent_path() ? path.parent_path() : fs::path("."));
 }
 
 std::string lower_extension(const fs::path& path) {

@@ -34,9 +34,9 @@ class Ball {
  private:
   double stiffness_for(const sim::World& world) const;
 
-  std::optional<sim::ToolHandle> tool_;  // none: the ball is not there
-  Vec3 wished_ = Vec3::Zero();           // [m]
-  double wished_radius_ = 0.0;           // [m]
+  std::optional<sim::ToolHandle> tool_;  // none: there is no ball
+  Vec3 wished_ = Vec3::Zero();           // target [m]
+  double wished_radius_ = 0.0;           // target [m]
   double stiffness_ = 0.0;               // [N/m3]
 };
 

@@ -16,9 +16,9 @@ namespace sinew::live {
 // Positions x of these nodes as floats [m] (3 a node).
 std::vector<float> gather(const std::vector<Vec3>& x, const std::vector<Index>& nodes);
 
-// 1 for every node shown that touches an obstacle, a tool, the ground, another body or its own;
-// empty where none does. Of a contact those nodes that bear at least a third of it: both sides have
-// one. `finder`: of the model; null where there are only soft spheres.
+// 1 for every shown node in contact with an obstacle, a tool, the ground, another body or its own;
+// empty if there is none. A contact marks its nodes with a weight of at least a third, which exist
+// on both sides. `finder`: of the model; null if only soft spheres can touch.
 std::vector<std::uint8_t> find_contacts(const Model& model, const Controls& controls,
                                         const State& state, const Topology& topology,
                                         ContactFinder* finder);

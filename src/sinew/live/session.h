@@ -24,7 +24,7 @@ class Session {
   // Builds the scene's model; paused. A scene with stepper = "static" takes implicit steps. Throws
   // the errors of sim::simulate.
   explicit Session(const Scene& scene) : Session(scene, nullptr) {}
-  Session(const Session&) = delete;  // nor moved: its world asks it how to step
+  Session(const Session&) = delete;  // its world refers to it
   Session& operator=(const Session&) = delete;
 
   // Applies the command. Throws Error(input, usage) and changes nothing if a value cannot be used

@@ -1,35 +1,10 @@
 #include "sinew/mesh/surface.h"
 
-#include <numeric>
-
 #include "sinew/mesh/faces.h"
+#include "sinew/mesh/node_sets.h"
 
 namespace sinew {
 namespace {
-
-// Union-find over nodes with path halving.
-class NodeSets {
- public:
-  explicit NodeSets(Index count) : parent_(uz(count)) {
-    std::iota(parent_.begin(), parent_.end(), 0);
-  }
-  Index root(Index i) {
-    while (parent_[uz(i)] != i) {
-      parent_[uz(i)] = parent_[uz(parent_[uz(i)])];
-      i = parent_[uz(i)];
-    }
-    return i;
-  }
-  void join(Index i, Index j) {
-    i = root(i);
-    j = root(j);
-    if (i < j) parent_[uz(j)] = i;
-    if (j < i) parent_[uz(i)] = j;
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 template <typename Element>
 Components components_of(std::span<const Element> elements, Index node_count) {

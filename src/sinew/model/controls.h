@@ -20,8 +20,8 @@ struct Grab {
   Vec3 target = Vec3::Zero();     // [m]
 };
 
-// A sphere that presses as a soft obstacle does (forces/obstacles.h). It belongs to who steps the
-// run, not to the scene: such as the ball of the live view.
+// A sphere that presses as a soft obstacle does (forces/obstacles.h). It belongs to the owner of
+// the run, not to the scene. Example: the ball of the live view.
 struct Tool {
   Vec3 center = Vec3::Zero();  // [m], before its path moves it
   double radius = 0.0;         // [m]
@@ -29,11 +29,11 @@ struct Tool {
   Path path = {};
 };
 
-// Made by initial_controls() alone: Controls have a path for every pin and obstacle of a Model.
+// Made by initial_controls() alone, so that every pin and obstacle of the Model has a path.
 struct Controls {
   Vec3 gravity = Vec3::Zero();       // [m/s2]
   std::vector<Path> pin_paths;       // (Model::pins)
-  std::vector<Path> obstacle_paths;  // (Model::obstacles); of a mesh: that of its pin as well
+  std::vector<Path> obstacle_paths;  // (Model::obstacles); the pin of a mesh has the same
   std::vector<Tool> tools;
   std::vector<Grab> grabs;
 
@@ -42,10 +42,10 @@ struct Controls {
   friend Controls initial_controls(const Model& model);
 };
 
-// The Model's gravity and paths, no tool, and nothing grabbed.
+// The Model's gravity and paths; no tools and no grabs.
 Controls initial_controls(const Model& model);
 
-// Where an obstacle of the Model is at a time [s].
+// The pose of an obstacle of the Model at a time [s].
 Pose obstacle_pose(const Model& model, const Controls& controls, Index obstacle, double time);
 
 // Whether f(path) holds for the path of any pin, obstacle or tool.

@@ -1,6 +1,8 @@
 // The material of a tissue region and the law of its springs.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace sinew {
@@ -67,6 +69,12 @@ inline double shear_modulus(double young, double poisson) {
 }
 inline double lame_lambda(double young, double poisson) {
   return young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson));
+}
+
+// The speed of pressure waves [m/s]: sqrt((lambda + 2 mu) / density), of nu = 0.499 at most.
+inline double pressure_wave_speed(const Material& m) {
+  const double nu = std::min(m.poisson, 0.499);
+  return std::sqrt((lame_lambda(m.young, nu) + 2.0 * shear_modulus(m.young, nu)) / m.density);
 }
 
 // The volume cells of a material, with `by_law` resolved.

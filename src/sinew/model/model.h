@@ -31,7 +31,7 @@ struct Body {
 struct Pin {
   std::string name;
   std::vector<Index> nodes;
-  Path path;  // what Controls start with
+  Path path;  // the initial one of Controls
 };
 
 // A force during a given time: on a set of nodes, or by area on faces of the surface
@@ -163,9 +163,9 @@ struct Model {
   std::vector<Probe> probes;
   std::vector<Obstacle> obstacles;    // those of the scene in its order, then its ground
   std::vector<double> surface_share;  // a third of the rest area of its surface triangles [m2]
-                                      // (nodes of bodies), 0 inside: what soft obstacles and
-                                      // tools press
-  Skin skin;                          // empty where there are no hard obstacles
+                                      // (nodes of bodies), 0 inside; soft obstacles and tools
+                                      // press on it
+  Skin skin;                          // empty without hard obstacles
   ContactSurface surface;  // of bodies and rigid meshes; empty without contact between them
 
   Index node_count() const { return static_cast<Index>(rest_position.size()); }

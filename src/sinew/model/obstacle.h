@@ -1,4 +1,4 @@
-// Rigid things that bodies may not enter; where they are at a time is in model/controls.h.
+// Rigid obstacles. model/controls.h has their poses at a time.
 // docs/methods/obstacles.md.
 #pragma once
 
@@ -17,7 +17,7 @@ struct Obstacle {
   std::string name;
   Vec3 center = Vec3::Zero();  // [m], before its path moves it
   double stiffness = 0.0;      // [N/m3] pressure per depth; 0: hard
-  Path path = {};              // moves and turns it, never deforms it: what Controls start with
+  Path path = {};              // moves and turns it, never deforms it; the initial one of Controls
   Shape shape = shapes::Sphere{};
   Mat3 rotation = Mat3::Identity();  // its own axes in the world, as columns, before the path
   double friction = 0.5;             // [-] Coulomb's mu >= 0; hard
@@ -46,7 +46,8 @@ struct Pose {
 };
 
 // The hard half-space below `point` [m] with a unit normal that points to the free side: the
-// `[ground]` of a scene. Its name has a space, so no obstacle of a scene can have the same.
+// `[ground]` of a scene. Its name contains a space, so no obstacle of a scene can have the same
+// name.
 Obstacle make_ground(const Vec3& point, const Vec3& normal, double restitution, double friction);
 
 }  // namespace sinew

@@ -6,7 +6,6 @@
 #include "sinew/base/error.h"
 #include "sinew/base/hash.h"
 #include "sinew/io/file_io.h"
-#include "sinew/run/folder.h"
 #include "sinew/sim/checkpoint.h"
 
 namespace sinew {
@@ -44,7 +43,7 @@ void write_run_checkpoint(const std::filesystem::path& file, const std::string& 
   put(bytes, digest_of(document));
   bytes += document;
   bytes += encode_run(model_hash, run);
-  write_durably(file, bytes);
+  io::write_durably(file, bytes);
 }
 
 RunCheckpoint read_run_checkpoint(const std::filesystem::path& file) {

@@ -178,7 +178,7 @@ RunFolder RunFolder::make(const fs::path& folder, bool force, const RunFiles& fi
   fs::create_directories(folder / "frames", failed);
   if (failed) fail(folder / "frames", "cannot make the folder", failed.value());
   out.write_list(files, hash_of(scene_toml));
-  write_durably(folder / "scene.toml", scene_toml);
+  io::write_durably(folder / "scene.toml", scene_toml);
   return out;
 }
 
@@ -229,27 +229,6 @@ void RunFolder::write_list(const RunFiles& files, const std::string& scene_hash)
       ::pwrite(lock_, text.data(), text.size(), 0) == static_cast<ssize_t>(text.size()) &&
       ::fsync(lock_) == 0;
   if (!written) fail(folder_ / lock_name, "cannot be written", errno);
-}
-
-void sync_to_disk(const fs::path& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) fail(path, "cannot be synced to the disk", errno);
-  const int code = ::fsync(file) == 0 ? 0 : errno;
-  ::close(file);
-  // Some file systems do not sync folders.
-  if (code != 0 && code != EINVAL && code != EROFS)
-    fail(path, "cannot be synced to the disk", code);
-}
-
-void write_durably(const fs::path& path, std::string_view bytes) {
-  fs::path fresh = path;
-  fresh += ".new";
-  io::write_file(fresh, bytes);
-  sync_to_disk(fresh);
-  std::error_code failed;
-  fs::rename(fresh, path, failed);
-  if (failed) fail(path, "cannot be written", failed.value());
-  sync_to_disk(path.has_parent_path() ? path.parent_path() : fs::path("."));
 }
 
 }  // namespace sinew

@@ -48,11 +48,4 @@ class RunFolder {
   int lock_ = -1;  // file descriptor
 };
 
-// Waits until a file, or the list of a folder's files, is on the disk. Error(io).
-void sync_to_disk(const std::filesystem::path& path);
-
-// io::write_file that also survives a power cut: the file is on the disk before it replaces the old
-// one, and the folder afterwards.
-void write_durably(const std::filesystem::path& path, std::string_view bytes);
-
 }  // namespace sinew

@@ -199,9 +199,9 @@ std::string format_frame(const Model& model, const RunState& run, const std::vec
 
 void Recorder::sync() {
   for (const char* table : {"probes.csv", "energy.csv", "frames.csv"})
-    sync_to_disk(folder_ / table);
-  for (const fs::path& frame : not_synced_) sync_to_disk(frame);
-  if (!not_synced_.empty()) sync_to_disk(folder_ / "frames");
+    io::sync_to_disk(folder_ / table);
+  for (const fs::path& frame : not_synced_) io::sync_to_disk(frame);
+  if (!not_synced_.empty()) io::sync_to_disk(folder_ / "frames");
   not_synced_.clear();
 }
 

@@ -2,7 +2,6 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,12 +16,11 @@
 #include <vector>
 
 #include "sinew/base/hash.h"
+#include "sinew/base/spawn.h"
 #include "sinew/io/file_io.h"
 #include "sinew/io/image.h"
 #include "sinew/io/mesh_io.h"
 #include "sinew/io/surface_file.h"
-
-extern char** environ;
 
 namespace sinew {
 namespace fs = std::filesystem;
@@ -79,23 +77,6 @@ class Listed {
  private:
   std::atomic<pid_t>* place_ = nullptr;
 };
-
-// Starts a program that hears signals, also where this thread does not. Returns an errno.
-int spawn(const std::vector<std::string>& command, const posix_spawn_file_actions_t& actions,
-          pid_t& child) {
-  std::vector<char*> words;
-  for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));
-  words.push_back(nullptr);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t none;
-  sigemptyset(&none);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  const int failure = posix_spawnp(&child, words[0], &actions, &attributes, words.data(), environ);
-  posix_spawnattr_destroy(&attributes);
-  return failure;
-}
 
 // Runs a program and waits. Returns its exit code, or a negative errno if it could not be started;
 // `told` receives its standard error.

@@ -82,7 +82,7 @@ KeyTables make_tables() {
                  number("tolerance", "", "1e-6", {1e-12, 0.1}),
                  number("budget_ms", "ms", "", positive),
                  {"dt", T::number_or_word, "s", "\"auto\"", {0.0, 1e6, true}, "auto"},
-                 integer("substeps", "1", from_to(1, 100000)),
+                 integer("substeps", "1", from_to(1, most_substeps)),
                  number("safety", "", "0.9", from_to(0.001, 1)),
                  boolean("allow_unstable", "false"),
                  point("gravity", "m/s2", "[0, -9.81, 0]"),

@@ -9,6 +9,9 @@
 
 namespace sinew {
 
+// The largest `substeps`.
+inline constexpr int most_substeps = 100000;
+
 enum class KeyType {
   boolean,
   integer,

@@ -3,33 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
 #include "sinew/base/error.h"
+#include "sinew/forces/loads.h"
 #include "sinew/mesh/doubles.h"
+#include "sinew/mesh/node_sets.h"
 
 namespace sinew {
 namespace {
 
 constexpr double balanced = 1e-6;  // sum of the forces over the sum of their sizes
-
-// Sets of nodes that are joined one after the other.
-class Sets {
- public:
-  explicit Sets(Index count) : parent_(uz(count)) { std::iota(parent_.begin(), parent_.end(), 0); }
-  Index find(Index i) {
-    while (parent_[uz(i)] != i) i = parent_[uz(i)] = parent_[uz(parent_[uz(i)])];
-    return i;
-  }
-  void join(Index i, Index j) {
-    const Index a = find(i), b = find(j);
-    parent_[uz(std::max(a, b))] = std::min(a, b);  // the root is the lowest node
-  }
-
- private:
-  std::vector<Index> parent_;
-};
 
 bool may_touch(const Scene& scene, const Model& model) {
   return scene.contact.has_value() || !model.obstacles.empty();
@@ -45,9 +29,9 @@ struct Resultant {
   }
 };
 
-std::vector<Resultant> resultants(const Model& model, Sets& sets) {
+std::vector<Resultant> resultants(const Model& model, NodeSets& sets) {
   std::vector<Resultant> out(model.rest_position.size());
-  const auto at = [&](Index node) -> Resultant& { return out[uz(sets.find(node))]; };
+  const auto at = [&](Index node) -> Resultant& { return out[uz(sets.root(node))]; };
   for (Index i = 0; i < model.body_node_count(); ++i)
     at(i).add(model.mass[uz(i)] * model.start_gravity);
   for (const Load& load : model.loads) {
@@ -55,33 +39,31 @@ std::vector<Resultant> resultants(const Model& model, Sets& sets) {
       at(node).add(load.force / static_cast<double>(load.nodes.size()));
     for (std::size_t f = 0; f < load.faces.size(); ++f) {
       const Triangle& t = load.faces[f];
-      const Vec3 a = model.rest_position[uz(t[0])];
-      const Vec3 outward =
-          (model.rest_position[uz(t[1])] - a).cross(model.rest_position[uz(t[2])] - a) / 2.0;
-      at(t[0]).add(load.rest_area[f] * load.traction - load.pressure * outward);
+      at(t[0]).add(load.rest_area[f] * load.traction -
+                   load.pressure * area_vector(model.rest_position, t));
     }
   }
   return out;
 }
 
-[[noreturn]] void refuse(const Scene& scene, const Model& model, Sets& sets, Index root) {
+[[noreturn]] void refuse(const Scene& scene, const Model& model, NodeSets& sets, Index root) {
   const auto body = std::find_if(model.bodies.begin(), model.bodies.end(), [&](const Body& b) {
     return root >= b.nodes.begin && root < b.nodes.end;
   });
   Index tets = 0, nodes = 0, all = 0;
   for (Index t = body->tets.begin; t < body->tets.end; ++t)
-    if (sets.find(model.tets[uz(t)][0]) == root) ++tets;
+    if (sets.root(model.tets[uz(t)][0]) == root) ++tets;
   Vec3 low = model.rest_position[uz(root)], high = low;
   for (Index i = body->nodes.begin; i < body->nodes.end; ++i) {
     ++all;
-    if (sets.find(i) != root) continue;
+    if (sets.root(i) != root) continue;
     ++nodes;
     low = low.cwiseMin(model.rest_position[uz(i)]);
     high = high.cwiseMax(model.rest_position[uz(i)]);
   }
   Index doubles = 0;
   for (const auto& [i, j] : find_doubles(model.rest_position, model.tets)) {
-    const bool one = sets.find(i) == root, other = sets.find(j) == root;
+    const bool one = sets.root(i) == root, other = sets.root(j) == root;
     if (one != other) ++doubles;
   }
   const std::string part =
@@ -110,7 +92,7 @@ std::vector<Resultant> resultants(const Model& model, Sets& sets) {
 
 void refuse_loose_parts(const Scene& scene, const Model& model) {
   if (scene.stepper != StepperKind::rest || may_touch(scene, model)) return;
-  Sets sets(model.node_count());
+  NodeSets sets(model.node_count());
   for (const Tet& t : model.tets)
     for (std::size_t c = 1; c < 4; ++c) sets.join(t[0], t[c]);
   std::vector<char> held(model.rest_position.size(), 0);
@@ -119,10 +101,10 @@ void refuse_loose_parts(const Scene& scene, const Model& model) {
   for (const Tie& tie : model.ties)
     for (const Index node : tie.node) sets.join(tie.node[0], node);
   for (Index i = 0; i < model.node_count(); ++i)
-    if (model.inverse_mass[uz(i)] == 0.0) held[uz(sets.find(i))] = 1;
+    if (model.inverse_mass[uz(i)] == 0.0) held[uz(sets.root(i))] = 1;
   const std::vector<Resultant> sums = resultants(model, sets);
   for (Index i = 0; i < model.body_node_count(); ++i) {
-    if (sets.find(i) != i || held[uz(i)] != 0) continue;
+    if (sets.root(i) != i || held[uz(i)] != 0) continue;
     if (sums[uz(i)].force.norm() > balanced * sums[uz(i)].size) refuse(scene, model, sets, i);
   }
 }

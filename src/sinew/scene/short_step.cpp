@@ -30,9 +30,7 @@ double wave_time(const std::array<Vec3, 4>& x, const Material& m) {
     largest = std::max(largest, (b - a).cross(d - a).norm());
   }
   const double height = 6.0 * std::abs(signed_volume(x[0], x[1], x[2], x[3])) / largest;
-  const double nu = std::min(m.poisson, 0.49);
-  const double modulus = m.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
-  return height / std::sqrt(modulus / m.density);
+  return height / pressure_wave_speed(m);
 }
 
 }  // namespace

@@ -116,9 +116,7 @@ double wave_speed(const SceneBody& body) {
   double fastest = 0.0;
   const auto consider = [&](const Material& m) {
     if (m.law == Law::uniform) fastest = no_limit;
-    const double nu = std::min(m.poisson, 0.499);
-    const double modulus = m.young * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu));
-    fastest = std::max(fastest, std::sqrt(modulus / m.density));
+    fastest = std::max(fastest, pressure_wave_speed(m));
   };
   consider(body.material);
   for (const SceneRegion& region : body.regions) consider(region.material);
@@ -134,8 +132,8 @@ double diagonal(const Model& model, const Body& body) {
   return (high - low).norm();
 }
 
-// The longest way of a pin's nodes between two times [m].
-double way(const Model& model, const Pin& pin, double from, double to) {
+// The largest displacement of a pin's nodes between two times [m].
+double displacement(const Model& model, const Pin& pin, double from, double to) {
   double most = 0.0;
   for (const Index node : pin.nodes) {
     const Vec3& X = model.rest_position[uz(node)];
@@ -146,7 +144,7 @@ double way(const Model& model, const Pin& pin, double from, double to) {
 
 void add_pin_warning(const Model& model, const Pin& pin, const SceneBody& body, double size,
                      std::vector<std::string>& out) {
-  constexpr double far = 0.1;  // of the body's size: a way that matters
+  constexpr double far = 0.1;  // of the body's size
   double at_start = 0.0;
   bool all = true;  // a body that moves as a whole is not torn
   for (const Index node : pin.nodes) {
@@ -167,12 +165,11 @@ void add_pin_warning(const Model& model, const Pin& pin, const SceneBody& body, 
   double before = 0.0;
   for (const KeyFrame& key : pin.path.keys) {
     const double span = key.time - before;
-    const double moved = span > 0.0 ? way(model, pin, before, key.time) : 0.0;
+    const double moved = span > 0.0 ? displacement(model, pin, before, key.time) : 0.0;
     if (moved > far * size && moved > waves * span) {
       out.push_back(fmt::format(
           "pin {} jumps at {:.4g} s: it moves {:.3g} m in {:.3g} s, and waves run through body {} "
-          "at "
-          "{:.3g} m/s only, so that the tissue beside it is torn; give its path more time",
+          "at {:.3g} m/s only, so that the tissue beside it is torn; give its path more time",
           pin.name, before, moved, span, body.name, waves));
       return;
     }

@@ -20,8 +20,7 @@ inline Point point(const Vec3& v) {
 // nearest to `near`.
 Vec3 rotation_vector(const Mat3& rotation, const Vec3& near);
 
-// Gives the obstacle's path to the pin of its nodes as well, where it is a mesh. Call after the
-// path has changed.
+// Gives the path of a mesh obstacle to the pin of its nodes, too. Call after the path has changed.
 void let_pin_follow(Controls& controls, const Model& model, std::size_t obstacle);
 
 // Replaces the keys of the path. The old motion is kept up to `start` [s], as far back as the last

@@ -1,4 +1,4 @@
-// What moves in a World: gravity, obstacles, pins, and the tools of its owner.
+// Motion of gravity, obstacles, pins and the owner's tools in a World.
 #include "sinew/forces/terms.h"
 #include "sinew/sim/mover.h"
 #include "sinew/sim/world.h"
@@ -10,7 +10,7 @@ void World::set_gravity(const Vec3& gravity) {
   ++changes_;
 }
 
-// Begins the moves that wait: they take `span` [s].
+// Starts the waiting moves; each takes `span` [s].
 void World::start_moves(double span) {
   if (!moves_waiting_ || !(span > 0.0)) return;
   moves_waiting_ = false;

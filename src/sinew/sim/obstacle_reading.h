@@ -13,9 +13,10 @@ namespace sinew {
 // longest edge of the bodies' surfaces.
 double contact_distance(const Model& model);
 
-// By obstacle that is listed. Soft: as the positions are (forces/obstacles.h). Hard: the force is
-// the mean over the last step, depth that of the deepest place inside, and places count that touch.
-// `finder`: of the model; null if there are no contacts (sim/world.h).
+// The readings of the listed obstacles, in their order. Soft obstacles: at the current positions
+// (forces/obstacles.h). Hard obstacles: the mean force over the last step, the depth of the deepest
+// contact, and the number of contacts. `finder`: of the model; null if there are no contacts
+// (sim/world.h).
 std::vector<ObstacleReading> read_obstacles(const Model& model, const Controls& controls,
                                             const State& state, ContactFinder* finder);
 

@@ -62,8 +62,8 @@ const Obstacle* obstacle_named(const Model& model, const std::string& name) {
   return found == model.obstacles.end() ? nullptr : &*found;
 }
 
-// Nodes of obstacles that are meshes come last: those that stay keep their places, the others are
-// where the controls have them.
+// The nodes of mesh obstacles come last. Those of obstacles that stay keep their state; the others
+// get the positions that the controls give them.
 State transfer_state(const Model& before, const State& old, const Model& after,
                      const Controls& controls, const std::string& replaced) {
   State s = initial_state(after);

@@ -8,9 +8,9 @@
 
 namespace sinew {
 
-// The state as it goes on with `after`, whose bodies, pins and attachments have the same nodes.
-// Obstacles may have come or gone; the one named `replaced` is initialised again. Contacts start
-// without a warm start. `controls`: of `after`.
+// The state for `after`, whose bodies, pins and attachments have the same nodes. Obstacles may have
+// been added or removed; the one named `replaced` is initialised again. Contacts have no warm
+// start. `controls`: of `after`.
 State transfer_state(const Model& before, const State& old, const Model& after,
                      const Controls& controls, const std::string& replaced);
 

@@ -7,6 +7,7 @@
 
 #include "sinew/base/clock.h"
 #include "sinew/base/error.h"
+#include "sinew/scene/keys.h"
 #include "sinew/sim/choose_stepper.h"
 
 namespace sinew {
@@ -26,7 +27,6 @@ double typed_step(double h) {
 }
 
 [[noreturn]] void refuse(const SteppingOptions& options, const FirstStep& first) {
-  constexpr double most_substeps = 100000.0;  // as in scene/keys.cpp
   const double substeps = *options.dt / first.stable;
   throw Error(
       ErrorKind::unstable,

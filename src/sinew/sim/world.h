@@ -31,7 +31,7 @@ namespace sinew::sim {
 // A tool of this world (model/controls.h).
 using ToolHandle = Handle<struct ToolKind>;
 
-// A scene, the tree it was read from, and what it was read as.
+// A scene, and the document that it was read from.
 struct Source {
   Scene scene;
   DocValue document;
@@ -117,15 +117,16 @@ class World {
 
   // ---- motion (moves.cpp) ----
   void set_gravity(const Vec3& gravity);
-  // To the pose over the next step or advance, or at once.
+  // Moves to the pose: over the next step or advance (move), or at once (place).
   void move(ObstacleHandle handle, const Pose& pose);
   void place(ObstacleHandle handle, const Pose& pose);
   void move(PinHandle handle, const RigidMotion& motion);
-  // A tool comes and goes without another model, and stays when the model changes.
+  // A tool (model/controls.h) is added and removed without another model, and stays when the model
+  // changes.
   ToolHandle add_tool(const Vec3& center, double radius, double stiffness);
-  // To `center` [m] over the next `seconds` > 0.
+  // Moves a tool to `center` [m] over the next `seconds` > 0.
   void move(ToolHandle handle, const Vec3& center, double seconds);
-  // Another radius [m] and stiffness [N/m3], at once.
+  // Gives a tool another radius [m] and stiffness [N/m3], at once.
   void reshape(ToolHandle handle, double radius, double stiffness);
   void remove(ToolHandle handle);
 
@@ -173,15 +174,14 @@ class World {
   ContactFinder* finder();
 
  private:
-  // Something that the owner has moved, or may: its path in the Controls is written in front of
-  // every step.
+  // An object that the owner may move: its path in the Controls is written before every step.
   struct Mover {
     std::uint64_t id = 0;
     std::string name;
-    bool held = false;           // by the owner: its path is no longer the scene's
-    std::optional<KeyFrame> to;  // where the next step or advance takes it
+    bool held = false;           // by the owner: it has left the scene's path
+    std::optional<KeyFrame> to;  // target of the next step or advance
   };
-  struct Named {  // what has a handle and nothing else
+  struct Named {  // an object with a handle alone
     std::uint64_t id = 0;
   };
   struct Patch {  // the nodes of a grab
@@ -250,7 +250,7 @@ class World {
   std::unique_ptr<const Model> model_;
   std::uint64_t model_hash_ = 0;
   std::unique_ptr<Stepping> stepping_;
-  std::optional<Controls> controls_;  // of the model: there with it
+  std::optional<Controls> controls_;  // of the model; empty before the first one
   RunState run_;
   RunState good_;       // the run returns to it when it diverges
   double clock_ = 0.0;  // time up to which advance() was requested [s]

@@ -38,8 +38,9 @@ class Constraints {
 
   bool empty() const;
 
-  // Takes the multipliers from where the state's last step left them. `from`: where the step of
-  // length `step` [s] and its slips start [m] (nodes); kept, and may be null without friction.
+  // Takes the multipliers of the state's last step. `from`: the positions at the start of the step
+  // of length `step` [s], from which slips are measured [m] (nodes); a reference is kept; may be
+  // null without friction.
   void start(const Controls& controls, const State& state, const std::vector<Vec3>* from,
              double step);
 
@@ -78,7 +79,7 @@ class Constraints {
   // Takes the forces at x as the new multipliers; returns the error of the old ones.
   ConstraintError update(const Controls& controls, const std::vector<Vec3>& x,
                          std::span<const double> tet_volume);
-  // Multiplies every k; start() takes that back.
+  // Multiplies every k by `factor`, until the next start().
   void harden(double factor) {
     hardness_ *= factor;
     contacts_.harden(factor);

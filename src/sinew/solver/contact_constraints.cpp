@@ -67,8 +67,8 @@ ContactConstraints::Constraint ContactConstraints::constraint_of(const Contact& 
   return h;
 }
 
-// Contacts at x; their force is that of the same pair before, or of the same feature where
-// it has gone on to another part of its owner.
+// Finds the contacts at x. A contact takes the force of the same pair before, or of the same
+// feature if it has moved on to another part of its owner.
 void ContactConstraints::find(const Controls& controls, const std::vector<Vec3>& x) {
   finder_->find(controls, from_ != nullptr ? *from_ : here_, x, before_, now_, {reach_, no_limit},
                 found_);
@@ -114,7 +114,7 @@ void ContactConstraints::find(const Controls& controls, const std::vector<Vec3>&
   constraints_ = std::move(next);
 }
 
-// Adds only the pairs that are not there yet; the others do not change.
+// Adds only the pairs that are not contacts yet; the others do not change.
 void ContactConstraints::add_new() {
   const auto before = [](const Constraint& a, const Constraint& b) {
     return comes_before(a.contact, b.contact);

@@ -27,8 +27,9 @@ class ContactConstraints {
 
   bool empty() const { return !finder_; }
 
-  // Takes the contact forces of the state's last step. from: where the step starts [m] (nodes),
-  // null: rest states, without friction; `step` [s] before state.time.
+  // Takes the contact forces of the state's last step. from: positions at the start of the step [m]
+  // (nodes), or null for rest states, which have no friction; the step starts `step` [s] before
+  // state.time.
   void start(const Controls& controls, const State& state, const std::vector<Vec3>* from,
              double step);
 

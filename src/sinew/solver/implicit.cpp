@@ -29,7 +29,7 @@ Field blend(double a, const Field& x, double b, const Field& y) {
   return out;
 }
 
-// Where the pinned nodes are at state.time.
+// Moves the pinned nodes to their positions at state.time.
 void move_pins(const Model& model, const Controls& controls, State& state) {
   for (std::size_t p = 0; p < model.pins.size(); ++p) {
     for (const Index node : model.pins[p].nodes) {
@@ -39,8 +39,8 @@ void move_pins(const Model& model, const Controls& controls, State& state) {
   }
 }
 
-// What loads, pins, soft obstacles and tools put in since the time `since`: their forces at its end
-// along the displacement. nodal_force: of the model and the constraints on all nodes at the end
+// The work of loads, pins, soft obstacles and tools since the time `since`: their forces at the end
+// times the displacement. nodal_force: of the model and the constraints on all nodes at the end
 // [N].
 double work_of_the_outside(const Model& model, const Controls& controls, const Field& before,
                            double since, const State& state, const Field& nodal_force) {
@@ -139,7 +139,8 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
   return std::move(newton.nodal_force);
 }
 
-// Heat of dashpots and drag by the scheme's own weights, work along the displacement from `before`.
+// The heat of dashpots and drag with the scheme's weights, and the work on the displacement from
+// `before`.
 void ImplicitStepper::account(const Controls& controls, const Field& before, double since,
                               double weight, const Field& nodal_force, State& state) {
   state.energy.dissipated += weight * damping_power(model_, before, state.half_velocity);

@@ -26,7 +26,7 @@ constexpr double soft_volume = 30.0;
 constexpr int most_load_cuts = 12;      // a load step may be halved this often
 constexpr int cuts_before_falling = 2;  // then dynamic relaxation is tried, once
 
-// The largest angle [rad] that a pin turns by between two times.
+// The largest rotation angle [rad] of a pin between two times.
 double pins_turn(const Controls& controls, double from, double to) {
   double largest = 0.0;
   for (const Path& path : controls.pin_paths) {
@@ -64,7 +64,8 @@ void for_each_joint(const Model& model, const Controls& controls, const F& f) {
   });
 }
 
-// Bodies joined by attachments, distances and glue, as the first body of each group (bodies).
+// Bodies joined by attachments, distance constraints and glue, as the first body of each group
+// (bodies).
 std::vector<std::size_t> joined_bodies(const Model& model, const Controls& controls) {
   std::vector<std::size_t> group(model.bodies.size());
   std::iota(group.begin(), group.end(), std::size_t{0});
@@ -102,7 +103,7 @@ std::vector<Index> unheld_groups(const Model& model, const Controls& controls) {
     }
   };
   for_each_joint(model, controls, [&](std::span<const Index> nodes) {
-    // An anchor holds what the other nodes belong to.
+    // An anchor holds the bodies of the other nodes.
     if (*std::max_element(nodes.begin(), nodes.end()) < model.body_node_count()) return;
     for (const Index node : nodes) hold(node);
   });

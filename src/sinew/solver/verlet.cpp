@@ -39,7 +39,7 @@ Index move_free_nodes(const Model& model, const std::vector<Vec3>& force, double
   return none;
 }
 
-// Moves the pinned nodes along their paths; adds the work their motion does on the springs.
+// Moves the pinned nodes along their paths; adds the work of their motion.
 void move_pins(const Model& model, const Controls& controls, const std::vector<Vec3>& force,
                double h, State& state) {
   const double mean_step = 0.5 * (state.last_step + h);
@@ -93,7 +93,7 @@ void follow_positions(const Model& model, const std::vector<Vec3>& force,
   });
 }
 
-// Projects the limits, with hard planes as constraints among them; velocities follow.
+// Projects the limits, with hard planes as additional constraints; velocities follow.
 void enforce_limits(const Model& model, const Controls& controls, const std::vector<Vec3>& force,
                     double h, State& state, StepReport& report) {
   const std::vector<Vec3> predicted = state.position;

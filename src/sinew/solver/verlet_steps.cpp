@@ -29,7 +29,7 @@ bool path_moves(const Path& path, double from, double to) {
   return false;
 }
 
-// Whether pins, obstacles or tools move anywhere between the times `from` and `to`.
+// Whether pins, obstacles or tools move at any time between `from` and `to`.
 bool anything_is_moved(const Controls& controls, double from, double to) {
   return any_path(controls, [&](const Path& path) { return path_moves(path, from, to); });
 }
