@@ -10,6 +10,12 @@
 namespace sinew {
 namespace {
 
+RunState rest_run(const Model& model) {
+  RunState run;
+  run.state = initial_state(model);
+  return run;
+}
+
 struct BoxRun {
   explicit BoxRun(const std::string& stepper)
       : scene(parse_scene("duration = 0.1\nstepper = \"" + stepper +
@@ -17,7 +23,7 @@ struct BoxRun {
                           "box.toml", {})),
         model(build_model(scene)),
         controls(initial_controls(model)),
-        run{.state = initial_state(model)},
+        run(rest_run(model)),
         stepping(scene, model, controls, run) {}
 
   Scene scene;
