@@ -21,6 +21,7 @@
 #include "sinew/mesh/quality.h"
 #include "sinew/mesh/size.h"
 #include "sinew/mesh/surface.h"
+#include "sinew/mesh/thin.h"
 #include "sinew/report/json.h"
 
 using namespace sinew;
@@ -52,6 +53,7 @@ struct Measures {
   Index surface_components = 0;
   Index components = 0;
   std::optional<std::string> size_warning;
+  std::optional<std::string> thin_warning;
 };
 
 struct Report {
@@ -78,6 +80,7 @@ Measures measure(TetMesh mesh, double scale) {
   m.surface_components = connected_components(surface.triangles, mesh.node_count()).count;
   m.components = connected_components(mesh.tets, mesh.node_count()).count;
   m.size_warning = size_warning(m.quality.volume, m.quality.box_max - m.quality.box_min, scale);
+  m.thin_warning = thin_warning(mesh);
   return m;
 }
 
@@ -115,7 +118,7 @@ nlohmann::ordered_json to_json(const Report& report) {
   out["remarks"] = notes.remarks;
   for (const char* key :
        {"edges", "components", "box", "volume", "regions", "edge_length", "tet_volume",
-        "dihedral_angle", "radius_ratio", "surface", "size_warning"}) {
+        "dihedral_angle", "radius_ratio", "surface", "size_warning", "thin_warning"}) {
     out[key] = nullptr;
   }
   if (report.measures) {
@@ -140,6 +143,7 @@ nlohmann::ordered_json to_json(const Report& report) {
                       {"area", m.surface_area},
                       {"components", m.surface_components}};
     if (m.size_warning) out["size_warning"] = *m.size_warning;
+    if (m.thin_warning) out["thin_warning"] = *m.thin_warning;
   }
   out["problems"] = json::array();
   for (const Problem& p : report.diagnosis.problems) {
@@ -212,7 +216,8 @@ void print_measures(const Measures& m) {
 void print_problems(const Report& report) {
   fmt::print("\nProblems\n");
   const bool odd_size = report.measures && report.measures->size_warning;
-  if (report.diagnosis.problems.empty() && !odd_size) fmt::print("  none\n");
+  const bool thin = report.measures && report.measures->thin_warning;
+  if (report.diagnosis.problems.empty() && !odd_size && !thin) fmt::print("  none\n");
   for (const Problem& p : report.diagnosis.problems) {
     fmt::print("  {:<12}{}\n", name(p.severity), p.text);
     if (!p.places.empty() && p.kind != ProblemKind::inverted_all) {
@@ -229,6 +234,7 @@ void print_problems(const Report& report) {
     }
   }
   if (odd_size) fmt::print("  {:<12}{}\n", "warning", *report.measures->size_warning);
+  if (thin) fmt::print("  {:<12}{}\n", "warning", *report.measures->thin_warning);
 }
 
 // Where the labels come from, and the arrays that are not used.

@@ -23,7 +23,7 @@ using test::shaken;
 using Field = std::vector<Vec3>;
 
 // A box of 0.1 m on an irregular mesh that only its viscosity of 20 Pa s damps.
-Model viscous_box(Law law = Law::neo_hookean, double beta = -1.0) {
+Model viscous_box(Law law = Law::neo_hookean, double beta = default_beta) {
   Material material;
   material.law = law;
   material.beta = beta;

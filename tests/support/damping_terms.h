@@ -6,6 +6,7 @@
 #include <array>
 #include <concepts>
 
+#include "sinew/forces/gradient_cells.h"
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/term.h"
 #include "sinew/forces/viscosity.h"
@@ -69,13 +70,14 @@ struct ViscosityTerm {
   template <class F>
   static void for_each_block(const Configuration& at, const F& visit) {
     const Model& m = at.model;
-    for (Index cell = 0; cell < m.viscous_cell_count(); ++cell) {
-      const Mat3 F_cell = viscous_deformation(m, at.x, cell);
-      const auto end = uz(m.viscous_cell[uz(cell) + 1]);
-      for (auto a = uz(m.viscous_cell[uz(cell)]); a < end; ++a) {
-        for (auto b = uz(m.viscous_cell[uz(cell)]); b < end; ++b) {
-          visit(m.viscous_node[a], m.viscous_node[b],
-                viscous_block(F_cell, m.viscous_gradient[a], m.viscous_gradient[b],
+    const GradientCells& cells = m.viscous_cells;
+    for (Index cell = 0; cell < cells.count(); ++cell) {
+      const Mat3 F_cell = cell_gradient(cells, at.x, cell);
+      const Range slots = cells.slots(cell);
+      for (auto a = uz(slots.begin); a < uz(slots.end); ++a) {
+        for (auto b = uz(slots.begin); b < uz(slots.end); ++b) {
+          visit(cells.node[a], cells.node[b],
+                viscous_block(F_cell, cells.gradient[a], cells.gradient[b],
                               m.viscous_weight[uz(cell)]));
         }
       }

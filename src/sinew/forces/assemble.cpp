@@ -7,6 +7,7 @@
 #include <span>
 
 #include "sinew/base/error.h"
+#include "sinew/forces/gradient_cells.h"
 #include "sinew/forces/laws.h"
 #include "sinew/forces/network.h"
 #include "sinew/forces/obstacles.h"
@@ -317,8 +318,9 @@ void finish(Model& model) {
   if (!model.network_start.empty()) {  // rows of bodies and anchors added later
     model.network_start.resize(model.rest_position.size() + 1, model.network_start.back());
   }
+  finish(model.edge_cells, model.rest_position.size());
+  finish(model.viscous_cells, model.rest_position.size());
   finish_volume_terms(model);
-  finish_viscosity(model);
   find_active_springs(model);
   list_springs_of_nodes(model);
   colour_limited_springs(model);

@@ -12,6 +12,7 @@ void add_tet(const TetMesh& mesh, std::span<const std::array<Vec3, 4>> gradients
   const auto t = uz(tet);
   const double share = signed_volume(mesh.nodes, mesh.tets[t]) / 6.0;
   cell.volume += share;
+  cell.tets.push_back(tet);
   for (std::size_t a = 0; a < 4; ++a) {
     const Index node = mesh.tets[t][a];
     const auto found = std::find(cell.nodes.begin(), cell.nodes.end(), node);
@@ -44,6 +45,7 @@ void for_each_edge_cell(const TetMesh& mesh, std::span<const std::array<Vec3, 4>
     for (const int r : regions) {
       cell.region = r;
       cell.volume = 0.0;
+      cell.tets.clear();
       cell.nodes.clear();
       cell.sums.clear();
       for (const Index t : around) {

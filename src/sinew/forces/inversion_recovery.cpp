@@ -66,10 +66,7 @@ std::vector<Index> find_tangled(const Model& model, std::span<const LowTet> low)
   for (std::size_t b = 0; b < model.bodies.size(); ++b) {
     const Range tets = model.bodies[b].tets;
     const auto inverted = std::count_if(low.begin(), low.end(), [&](const LowTet& tet) {
-      const auto t = uz(tet.tet);
-      const bool kept =
-          model.tet_shear[t] > 0.0 || model.tet_bulk[t] > 0.0 || model.cells[t][0] >= 0;
-      return kept && tet.volume <= 0.0 && tets.contains(tet.tet);
+      return keeps_volume(model, tet.tet) && tet.volume <= 0.0 && tets.contains(tet.tet);
     });
     if (static_cast<double>(inverted) > tangled_share * tets.size())
       tangled.push_back(static_cast<Index>(b));

@@ -33,7 +33,8 @@ void NetworkTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
 }
 
 double VolumeTerm::energy(const Configuration& at) {
-  return volume_energy(at.model, volumes_of_tets(at.model, at.x));
+  return volume_energy(at.model, volumes_of_tets(at.model, at.x)) +
+         edge_volume_energy(at.model, at.x);
 }
 
 void VolumeTerm::add_forces(const Configuration& at, std::span<Vec3> forces) {
@@ -64,6 +65,7 @@ VolumeParts::VolumeParts(const Configuration& at) {
   TetState tets = compute_tet_state(m, at.x);
   for (std::size_t t = 0; t < m.tets.size(); ++t)
     stiffness.push_back(tet_volume_stiffness(m, t, tets.volume[t]) / m.rest_volume[t]);
+  edges = std::move(tets.edges);
   pressure = std::move(tets.pressure);
   gradient = std::move(tets.gradient);
   for (std::size_t c = 0; c < m.cell_volume.size(); ++c) {

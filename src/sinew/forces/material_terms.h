@@ -8,6 +8,7 @@
 #include <cmath>
 #include <vector>
 
+#include "sinew/forces/edge_volume.h"
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/term.h"
 
@@ -60,7 +61,8 @@ struct NetworkTerm {
 };
 
 // Its tangent is not a sum of Elements: for tets and cells with pressures s and stiffness k it is
-// sum k g_a g_b^T + s d2v/dx_a dx_b.
+// sum k g_a g_b^T + s d2v/dx_a dx_b, for edge cells
+// sum V (kappa (C g_a)(C g_b)^T + s d2J/dx_a dx_b), C = cof F.
 struct VolumeTerm {
   static constexpr Account account = Account::elastic;
   static double energy(const Configuration& at);
@@ -100,6 +102,7 @@ struct VolumeParts {
   std::vector<double> stiffness;              // d2W/dv2 of the tets' own energies [Pa/m3] (tets)
   std::vector<std::array<Vec3, 4>> gradient;  // dv/dx of the corners [m2] (tets)
   std::vector<Cell> cells;
+  EdgeState edges;
 };
 
 template <class F>
@@ -127,6 +130,15 @@ void VolumeTerm::for_each_block(const Configuration& at, const F& visit) {
         visit(cell.nodes[a], cell.nodes[b],
               Mat3(cell.stiffness * cell.gradient[a] * cell.gradient[b].transpose()));
       }
+    }
+  }
+  const GradientCells& edges = at.model.edge_cells;
+  for (Index i = 0; i < edges.count(); ++i) {
+    const Range slots = edges.slots(i);
+    const EdgeTangent tangent(at.model, parts.edges, i);
+    for (auto a = uz(slots.begin); a < uz(slots.end); ++a) {
+      for (auto b = uz(slots.begin); b < uz(slots.end); ++b)
+        visit(edges.node[a], edges.node[b], tangent.block(edges.gradient[a], edges.gradient[b]));
     }
   }
 }

@@ -5,6 +5,7 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/edge_cells.h"
+#include "sinew/forces/gradient_cells.h"
 
 namespace sinew {
 namespace {
@@ -84,6 +85,7 @@ std::array<Vec3, 4> shape_gradients(const std::vector<Vec3>& nodes, const Tet& t
 
 void add_network(Model& model, const TetMesh& mesh, const std::vector<Material>& materials,
                  std::span<const int> tet_region, Index first_node) {
+  const Index first_tet = model.tet_count() - mesh.tet_count();
   const auto region_of = [&](Index t) { return tet_region.empty() ? 0 : tet_region[uz(t)]; };
   const auto in_network = [&](const Material& m) { return m.law == Law::neo_hookean; };
   if (std::none_of(materials.begin(), materials.end(), in_network)) return;
@@ -94,18 +96,24 @@ void add_network(Model& model, const TetMesh& mesh, const std::vector<Material>&
   std::vector<UpperRow> upper(mesh.nodes.size());
   for (Index t = 0; t < mesh.tet_count(); ++t) {
     const Material& m = materials[static_cast<std::size_t>(region_of(t))];
-    const double beta = network_beta(m);
-    if (!in_network(m) || beta == 0.0) continue;
+    if (!in_network(m) || m.beta == 0.0) continue;
     const double weight =
-        beta * shear_modulus(m.young, m.poisson) * signed_volume(mesh.nodes, mesh.tets[uz(t)]);
+        m.beta * shear_modulus(m.young, m.poisson) * signed_volume(mesh.nodes, mesh.tets[uz(t)]);
     add_cell(mesh.tets[uz(t)], gradients[uz(t)], weight, upper);
   }
   for_each_edge_cell(mesh, gradients, tet_region, [&](const EdgeCell& cell) {
     const Material& m = materials[static_cast<std::size_t>(cell.region)];
-    const double beta = network_beta(m);
-    if (!in_network(m) || beta == 1.0) return;
-    const double shear = (1.0 - beta) * shear_modulus(m.young, m.poisson);
+    if (!in_network(m) || m.beta == 1.0) return;
+    const double shear = (1.0 - m.beta) * shear_modulus(m.young, m.poisson);
     add_cell(cell.nodes, cell.sums, shear / cell.volume, upper);
+    append_cell(model.edge_cells, cell.nodes, cell.sums, 1.0 / cell.volume, cell.volume,
+                first_node);
+    for (const Index t : cell.tets) {
+      model.edge_tet.push_back(first_tet + t);
+      model.edge_tet_cell.push_back(model.edge_cells.count() - 1);
+    }
+    model.edge_shear.push_back(shear);
+    model.edge_bulk.push_back((1.0 - m.beta) * shear_bulk(m));
   });
   append_rows(model, upper, first_node);
 }

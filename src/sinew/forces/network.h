@@ -20,7 +20,10 @@ std::array<Vec3, 4> shape_gradients(const std::vector<Vec3>& nodes, const Tet& t
 //   L_edge,r = sum_e V_e mu_r g_a . g_b,  V_e = sum_{t in r around e} V_t/6,
 //              g_a = (sum_{t in r around e} (V_t/6) G_ta) / V_e
 //
-// Only tets whose material has the law neo-hookean take part. tet_region: (tets) or empty.
+// and the cells of L_edge to its edge cells, with (1 - beta_r) mu_r and (1 - beta_r) kappa_e,r.
+//
+// The mesh's tets are the model's last ones. Only tets whose material has the law neo-hookean take
+// part. tet_region: (tets) or empty.
 void add_network(Model& model, const TetMesh& mesh, const std::vector<Material>& materials,
                  std::span<const int> tet_region, Index first_node);
 

@@ -98,6 +98,12 @@ PackedGroups PackedForces::rings_of(const Patch& patch) const {
           ring_length_.data() + g.groups.begin, g.groups.size()};
 }
 
+PackedGroups PackedForces::edge_cells_of(const Patch& patch) const {
+  const Groups& g = patch.edge_cells;
+  return {edge_cell_corner_.data() + g.first_corner, edge_cell_data_.data() + g.first_datum,
+          edge_cell_length_.data() + g.groups.begin, g.groups.size()};
+}
+
 PackedGroups PackedForces::one_rings_of(const Patch& patch) const {
   const Groups& g = patch.one_rings;
   return {one_ring_corner_.data() + g.first_corner, one_ring_data_.data() + g.first_datum,
@@ -140,6 +146,7 @@ double PackedForces::compute_nearby(const Model& model, const State& state) {
     const float* u = slot_displacement_.data() + 4 * patch.slots.begin;
     smallest[uz(p)] =
         packed_tet_forces(rings_of(patch), u, tet_change_.data() + patch.first_tet, force);
+    packed_edge_forces(edge_cells_of(patch), u, force);
     if (!velocity_.empty()) {
       heat[uz(p)] = packed_spring_forces(one_rings_of(patch), u,
                                          slot_velocity_.data() + 4 * patch.slots.begin, force);
@@ -194,9 +201,10 @@ std::size_t PackedForces::bytes() const {
   const auto of = [](const auto&... arrays) { return ((arrays.size() * sizeof(arrays[0])) + ...); };
   return of(patches_, frame_nodes_, node_of_, body_of_, slot_node_, slot_cell_, other_slot_,
             other_node_, cell_start_, cell_slot_, cell_stiffness_, ring_corner_, ring_data_,
-            ring_length_, tet_id_, one_ring_corner_, one_ring_data_, one_ring_length_, row_start_,
-            row_offset_, row_stiffness_, frames_, displacement_, velocity_, slot_displacement_,
-            slot_velocity_, slot_force_, tet_change_, cell_pressure_);
+            ring_length_, tet_id_, edge_cell_corner_, edge_cell_data_, edge_cell_length_,
+            one_ring_corner_, one_ring_data_, one_ring_length_, row_start_, row_offset_,
+            row_stiffness_, frames_, displacement_, velocity_, slot_displacement_, slot_velocity_,
+            slot_force_, tet_change_, cell_pressure_);
 }
 
 }  // namespace sinew

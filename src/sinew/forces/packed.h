@@ -6,10 +6,10 @@
 // nor on the motion of the body.
 //
 // Nodes, tets and springs are divided into patches of neighbouring nodes and stored in that order.
-// A patch adds the forces of its tets and springs to its own copies of their nodes (its slots),
-// which stay in the nearest cache; then the slots of every node are summed. Patches do not depend
-// on the number of threads, and every sum has one order: the bits are the same for any number of
-// threads.
+// A patch adds the forces of its tets, edge cells and springs to its own copies of their nodes (its
+// slots), which stay in the nearest cache; then the slots of every node are summed. Patches do not
+// depend on the number of threads, and every sum has one order: the bits are the same for any
+// number of threads.
 #pragma once
 
 #include <array>
@@ -67,7 +67,7 @@ class PackedForces {
 
   static constexpr Index most_nodes = 512;  // per patch: its slots stay in the L1 cache
 
-  // The start of a patch's groups of rings or one-rings in the common arrays.
+  // The start of a patch's groups of rings, edge cells or one-rings in the common arrays.
   struct Groups {
     Range groups;
     Index first_corner = 0;
@@ -79,6 +79,7 @@ class PackedForces {
     Range slots;      // the first are the patch's own nodes
     Range others;     // in other_slot_
     Groups rings;
+    Groups edge_cells;
     Groups one_rings;
     Index first_tet = 0;  // in tet_id_ and tet_change_
 
@@ -96,6 +97,7 @@ class PackedForces {
   void find_low_tets(const Patch& patch);
   void gather(const Patch& patch, float* force) const;
   PackedGroups rings_of(const Patch& patch) const;
+  PackedGroups edge_cells_of(const Patch& patch) const;
   PackedGroups one_rings_of(const Patch& patch) const;
 
   std::vector<Patch> patches_;
@@ -111,12 +113,15 @@ class PackedForces {
   std::vector<float> cell_stiffness_;       // kappa_c W^2 / V_c [Pa/m3], W the weight (cells)
   std::vector<std::uint16_t> ring_corner_;  // packed_kernels.h
   std::vector<float> ring_data_;
-  std::vector<std::uint8_t> ring_length_;  // (groups)
-  std::vector<Index> tet_id_;              // (8 per group and tet) -1: none
+  std::vector<std::uint16_t> ring_length_;  // (groups)
+  std::vector<Index> tet_id_;               // (8 per group and tet) -1: none
+  std::vector<std::uint16_t> edge_cell_corner_;
+  std::vector<float> edge_cell_data_;
+  std::vector<std::uint16_t> edge_cell_length_;  // nodes (groups)
   std::vector<std::uint16_t> one_ring_corner_;
   std::vector<float> one_ring_data_;
-  std::vector<std::uint8_t> one_ring_length_;  // (groups)
-  std::vector<Index> row_start_;               // PackedRows; empty: no network
+  std::vector<std::uint16_t> one_ring_length_;  // (groups)
+  std::vector<Index> row_start_;                // PackedRows; empty: no network
   std::vector<std::uint32_t> row_offset_;
   std::vector<float> row_stiffness_;  // [N/m]
 

@@ -1,4 +1,4 @@
-// Puts rings and one-rings into groups of eight, for packer.cpp.
+// Puts rings, edge cells and one-rings into groups of eight, for packer.cpp.
 #pragma once
 
 #include <algorithm>
@@ -63,6 +63,26 @@ void group_by_length(std::vector<Item> items, const Emit& emit) {
     of_length.erase(of_length.begin(), of_length.begin() + static_cast<std::ptrdiff_t>(
                                                                std::min(first, of_length.size())));
     for (Item& item : of_length) single.push_back(item.split_last());
+  }
+}
+
+// The same for items that cannot be split: groups of equal size, and each size may leave one with
+// fewer than eight. size_of(item) is the size. A group has at most `most` items times their size.
+template <class Size, class Emit>
+void group_by_size(std::vector<Index> items, Index most, const Size& size_of, const Emit& emit) {
+  std::stable_sort(items.begin(), items.end(),
+                   [&](Index a, Index b) { return size_of(a) > size_of(b); });
+  for (std::size_t begin = 0; begin < items.size();) {
+    const Index size = size_of(items[begin]);
+    std::vector<Index> equal;
+    for (; begin < items.size() && size_of(items[begin]) == size; ++begin)
+      equal.push_back(items[begin]);
+    spread(equal);
+    const std::size_t lanes = uz(std::clamp(most / size, 1, 8));
+    for (std::size_t first = 0; first < equal.size(); first += lanes) {
+      const std::size_t count = std::min(lanes, equal.size() - first);
+      emit(size, std::span<const Index>(equal.data() + first, count));
+    }
   }
 }
 

@@ -156,6 +156,51 @@ float tet_forces(const PackedGroups& rings, const float* u, const float* change,
   return smallest_of(smallest);
 }
 
+// With F = 1 + H, H = sum_a (u_a - u_0) g_a^T, no terms cancel at rest:
+//   J - 1 = tr H + tr cof H + det H,   cof F = 1 + D,   D = tr H 1 - H^T + cof H,
+// and a node gets -(V s cof F - V s_rest) g_a = -(V kappa (J - 1) 1 + V s D) g_a.
+void edge_forces(const PackedGroups& edge_cells, const float* u, float* force) {
+  Cursor at{edge_cells.corner, edge_cells.data};
+  for (Index g = 0; g < edge_cells.groups; ++g) {
+    const int nodes = edge_cells.length[g];
+    const Eight shear = at.next();
+    const Eight bulk = at.next();
+    const std::uint16_t* first = at.next_corner();
+    const Eight3 u0 = load_rows(u, first).v;
+    const Cursor ends = at;
+    Eight3 X = {zero(), zero(), zero()};  // the columns of H
+    Eight3 Y = X;
+    Eight3 Z = X;
+    for (int a = 1; a < nodes; ++a) {
+      const Eight3 d = load_rows(u, at.next_corner()).v - u0;
+      const Eight3 gradient = at.next3();
+      X = X + gradient.x * d;
+      Y = Y + gradient.y * d;
+      Z = Z + gradient.z * d;
+    }
+    const Eight3 cX = cross(Y, Z);
+    const Eight3 cY = cross(Z, X);
+    const Eight3 cZ = cross(X, Y);
+    const Eight trace = X.x + Y.y + Z.z;
+    const Eight press = bulk * (trace + (cX.x + cY.y + cZ.z) + dot(X, cX));
+    const Eight s = press - shear;
+    const Eight own = press + s * trace;
+    const Eight3 pX = {s * (cX.x - X.x) + own, s * (cX.y - Y.x), s * (cX.z - Z.x)};
+    const Eight3 pY = {s * (cY.x - X.y), s * (cY.y - Y.y) + own, s * (cY.z - Z.y)};
+    const Eight3 pZ = {s * (cZ.x - X.z), s * (cZ.y - Y.z), s * (cZ.z - Z.z) + own};
+    Eight3 on_first = {zero(), zero(), zero()};
+    at = ends;
+    for (int a = 1; a < nodes; ++a) {
+      const std::uint16_t* end = at.next_corner();
+      const Eight3 gradient = at.next3();
+      const Eight3 f = gradient.x * pX + gradient.y * pY + gradient.z * pZ;
+      on_first = on_first + f;
+      add_rows(force, end, -f);
+    }
+    add_rows(force, first, on_first);
+  }
+}
+
 // As in spring_law.h, with |x| - l0 = (|x|^2 - l0^2) / (|x| + l0) from the change of the square,
 // and one division for both: r = 1 / ((|x| + l0) |x|^2).
 double spring_forces(const PackedGroups& one_rings, const float* u, const float* velocity,
@@ -266,6 +311,7 @@ namespace sinew {
 
 HWY_EXPORT(volumes);
 HWY_EXPORT(tet_forces);
+HWY_EXPORT(edge_forces);
 HWY_EXPORT(spring_forces);
 HWY_EXPORT(gather);
 
@@ -276,6 +322,10 @@ void packed_volumes(const PackedGroups& rings, const float* u, float* change, fl
 float packed_tet_forces(const PackedGroups& rings, const float* u, const float* change,
                         float* force) {
   return HWY_DYNAMIC_DISPATCH(tet_forces)(rings, u, change, force);
+}
+
+void packed_edge_forces(const PackedGroups& edge_cells, const float* u, float* force) {
+  HWY_DYNAMIC_DISPATCH(edge_forces)(edge_cells, u, force);
 }
 
 double packed_spring_forces(const PackedGroups& one_rings, const float* u, const float* velocity,

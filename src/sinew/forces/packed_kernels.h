@@ -1,5 +1,5 @@
-// The loops of PackedForces over groups of eight rings of tets or one-rings of springs, for every
-// instruction set that the processor may have; all give the same bits.
+// The loops of PackedForces over groups of eight rings of tets, edge cells or one-rings of springs,
+// for every instruction set that the processor may have; all give the same bits.
 //
 // A group is eight rings of the same length, one per lane. Its corners are stored as
 //   axis[0], axis[1], ring[0], ring[1], ...   eight of each,
@@ -24,11 +24,16 @@ inline constexpr Index ring_tet_fields = 5;
 // X_ij (3) [m], |X_ij|^2 - l0^2 [m2], l0 [m], k [N/m], c [N s/m]; i is the one-ring's centre.
 inline constexpr Index one_ring_spring_fields = 7;
 
-// Groups of rings or one-rings, one after the other.
+// Head of eight edge cells: V mu, V kappa [J].
+inline constexpr Index edge_cell_head_fields = 2;
+// g_a of every node but the first [1/m], whose gradient is minus their sum.
+inline constexpr Index edge_cell_node_fields = 3;
+
+// Groups of rings, edge cells or one-rings, one after the other.
 struct PackedGroups {
   const std::uint16_t* corner = nullptr;  // of a one-ring: the centre, then the other ends
   const float* data = nullptr;
-  const std::uint8_t* length = nullptr;  // tets or springs of each ring or one-ring (groups)
+  const std::uint16_t* length = nullptr;  // tets, springs or nodes of each item (groups)
   Index groups = 0;
 };
 
@@ -39,6 +44,8 @@ void packed_volumes(const PackedGroups& rings, const float* u, float* change, fl
 // their weights. Returns the smallest v/V.
 float packed_tet_forces(const PackedGroups& rings, const float* u, const float* change,
                         float* force);
+// Adds the forces of the edge cells' volumes.
+void packed_edge_forces(const PackedGroups& edge_cells, const float* u, float* force);
 // Adds the forces of the springs; returns the heat of the dashpots [W].
 double packed_spring_forces(const PackedGroups& one_rings, const float* u, const float* velocity,
                             float* force);

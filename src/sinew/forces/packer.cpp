@@ -1,12 +1,15 @@
 // Fills the arrays of PackedForces.
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <map>
 #include <numeric>
 
+#include "sinew/base/error.h"
 #include "sinew/base/sort_by_key.h"
 #include "sinew/forces/packed.h"
 #include "sinew/forces/packed_groups.h"
-#include "sinew/forces/volume.h"
+#include "sinew/forces/volume_cells.h"
 #include "sinew/mesh/bisect.h"
 #include "sinew/mesh/edge_rings.h"
 
@@ -16,7 +19,7 @@ namespace {
 constexpr std::size_t longest_ring = 6;
 constexpr std::size_t longest_one_ring = 8;
 constexpr std::size_t most_slots = 0x10000 / 4;  // per patch: 4 x slot has 16 bits
-constexpr std::size_t most_slots_of_group = 8 * (3 + std::max(longest_ring, longest_one_ring));
+constexpr std::size_t most_corners_of_ring = 3 + std::max(longest_ring, longest_one_ring);
 
 // Three nodes of the body: the one nearest to its middle, the farthest from that one, and the
 // farthest from the line of both.
@@ -49,11 +52,17 @@ class Packer {
     order_nodes();
     const auto patches = uz(to_.patch_count());
     std::vector<std::vector<Index>> tets(patches);
+    std::vector<std::vector<Index>> edge_cells(patches);
     std::vector<std::vector<Index>> springs(patches);
     for (Index t = 0; model_.has_volume && t < model_.tet_count(); ++t) {
       Index patch = to_.patch_count();
       for (const Index i : model_.tets[uz(t)]) patch = std::min(patch, patch_of_[uz(i)]);
       tets[uz(patch)].push_back(t);
+    }
+    for (Index e = 0; e < model_.edge_cells.count(); ++e) {
+      Index patch = to_.patch_count();
+      for (const Index i : nodes_of(e)) patch = std::min(patch, patch_of_[uz(i)]);
+      edge_cells[uz(patch)].push_back(e);
     }
     std::vector<Index> loose;
     for (const Range& active : model_.active_springs) {
@@ -73,9 +82,16 @@ class Packer {
       begin_patch(static_cast<Index>(p));
       group_by_length(std::move(rings[p]),
                       [&](std::size_t length, std::span<const EdgeRing> group) {
-                        make_room();
+                        make_room(most_corners_of_ring);
                         pack_rings(length, group);
                       });
+      group_by_size(
+          std::move(edge_cells[p]), static_cast<Index>(most_slots),
+          [&](Index e) { return static_cast<Index>(nodes_of(e).size()); },
+          [&](Index nodes, std::span<const Index> group) {
+            make_room(uz(nodes), group.size());
+            pack_edge_cells(uz(nodes), group);
+          });
       pack_springs(springs[p]);
       end_patch();
     }
@@ -86,6 +102,10 @@ class Packer {
   }
 
  private:
+  std::span<const Index> nodes_of(Index edge_cell) const {
+    const Range slots = model_.edge_cells.slots(edge_cell);
+    return std::span(model_.edge_cells.node).subspan(uz(slots.begin), uz(slots.size()));
+  }
   Index body_of(Index node) const { return to_.body_of_[uz(packed_of_[uz(node)])]; }
 
   // Makes the patches of the bodies' nodes and of the nodes of no body; in each, neighbours are
@@ -149,6 +169,8 @@ class Packer {
     for (Index n = patch.nodes.begin; n < patch.nodes.end; ++n) add_slot(n, free_cell);
     patch.first_tet = size(to_.tet_id_);
     patch.rings = {{size(to_.ring_length_), 0}, size(to_.ring_corner_), size(to_.ring_data_)};
+    patch.edge_cells = {
+        {size(to_.edge_cell_length_), 0}, size(to_.edge_cell_corner_), size(to_.edge_cell_data_)};
     patch.one_rings = {
         {size(to_.one_ring_length_), 0}, size(to_.one_ring_corner_), size(to_.one_ring_data_)};
   }
@@ -157,14 +179,15 @@ class Packer {
     PackedForces::Patch& patch = to_.patches_[uz(patch_)];
     patch.slots.end = size(to_.slot_node_);
     patch.rings.groups.end = size(to_.ring_length_);
+    patch.edge_cells.groups.end = size(to_.edge_cell_length_);
     patch.one_rings.groups.end = size(to_.one_ring_length_);
     std::replace(to_.slot_cell_.begin() + patch.slots.begin, to_.slot_cell_.end(), free_cell, -1);
   }
 
-  // Starts a patch without nodes of its own if the next group may need more slots than 16 bits can
-  // count: a node may have any number of tets and springs.
-  void make_room() {
-    if (to_.slot_node_.size() - first_slot_ + most_slots_of_group <= most_slots) return;
+  // Starts a patch without nodes of its own if the next group, with so many corners per lane, may
+  // need more slots than 16 bits can count: a node may have any number of tets and springs.
+  void make_room(std::size_t corners, std::size_t lanes = 8) {
+    if (to_.slot_node_.size() - first_slot_ + lanes * corners <= most_slots) return;
     const Index body = to_.patches_[uz(patch_)].body;
     end_patch();
     add_patch(body);
@@ -214,7 +237,7 @@ class Packer {
   // --- tets ---
 
   void pack_rings(std::size_t length, std::span<const EdgeRing> rings) {
-    to_.ring_length_.push_back(static_cast<std::uint8_t>(length));
+    to_.ring_length_.push_back(static_cast<std::uint16_t>(length));
     const auto& X = model_.rest_position;
     const std::size_t corner = to_.ring_corner_.size();
     to_.ring_corner_.resize(corner + (length + 3) * uz(packed_lanes), 0);
@@ -235,7 +258,7 @@ class Packer {
       head.put(3, lane, X[uz(ring.nodes[0])] - origin);
       head.put(6, lane, model_.tet_shear[t] / 6.0);
       head.put(7, lane, model_.tet_bulk[t]);
-      head.put(8, lane, model_.tet_bulk[t] > 0.0 ? 0.0 : model_.tet_modulus[t]);
+      head.put(8, lane, model_.tet_guard[t]);
     }
     for (std::size_t k = 0; k < length; ++k) {
       Fields fields(to_.ring_data_, ring_tet_fields);
@@ -250,6 +273,36 @@ class Packer {
         for (const Index c : model_.cells[t]) weights += c >= 0 ? weight_[uz(c)] : 0.0;
         if (weights > 0.0) fields.put(4, lane, 1.0 / weights);
         to_.tet_id_[to_.tet_id_.size() - uz(packed_lanes) + lane] = ring.tets[k];
+      }
+    }
+  }
+
+  // --- edge cells ---
+
+  void pack_edge_cells(std::size_t nodes, std::span<const Index> cells) {
+    if (nodes > most_slots) {
+      throw Error(ErrorKind::input, fmt::format("{} tets share one edge of the mesh", nodes - 2),
+                  fmt::format("mesh with at most {} around an edge", most_slots - 2));
+    }
+    to_.edge_cell_length_.push_back(static_cast<std::uint16_t>(nodes));
+    const std::size_t corner = to_.edge_cell_corner_.size();
+    to_.edge_cell_corner_.resize(corner + nodes * uz(packed_lanes), 0);
+    Fields head(to_.edge_cell_data_, edge_cell_head_fields);
+    for (std::size_t lane = 0; lane < cells.size(); ++lane) {
+      const auto e = uz(cells[lane]);
+      head.put(0, lane, model_.edge_cells.volume[e] * model_.edge_shear[e]);
+      head.put(1, lane, model_.edge_cells.volume[e] * model_.edge_bulk[e]);
+    }
+    for (std::size_t a = 0; a < nodes; ++a) {
+      for (std::size_t lane = 0; lane < cells.size(); ++lane) {
+        to_.edge_cell_corner_[corner + a * uz(packed_lanes) + lane] =
+            slot(nodes_of(cells[lane])[a]);
+      }
+      if (a == 0) continue;
+      Fields fields(to_.edge_cell_data_, edge_cell_node_fields);
+      for (std::size_t lane = 0; lane < cells.size(); ++lane) {
+        const auto first = uz(model_.edge_cells.slots(cells[lane]).begin);
+        fields.put(0, lane, model_.edge_cells.gradient[first + a]);
       }
     }
   }
@@ -275,13 +328,13 @@ class Packer {
       list.back().springs.push_back(s);
     }
     group_by_length(std::move(list), [&](std::size_t length, std::span<const OneRing> group) {
-      make_room();
+      make_room(most_corners_of_ring);
       pack_one_rings(length, group);
     });
   }
 
   void pack_one_rings(std::size_t length, std::span<const OneRing> one_rings) {
-    to_.one_ring_length_.push_back(static_cast<std::uint8_t>(length));
+    to_.one_ring_length_.push_back(static_cast<std::uint16_t>(length));
     const std::size_t corner = to_.one_ring_corner_.size();
     to_.one_ring_corner_.resize(corner + (length + 1) * uz(packed_lanes), 0);
     for (std::size_t lane = 0; lane < one_rings.size(); ++lane) {

@@ -28,17 +28,17 @@ void add_term_products(const Configuration& at, Tangent tangent, double a, std::
 
 void TangentProduct::times(const Configuration& at, const TetState& tets, double a, double b,
                            std::span<const Vec3> u, Tangent tangent, std::span<Vec3> out) {
-  std::span<const Vec3> of_tets;
-  if (at.model.has_volume && a != 0.0) of_tets = volume_.compute(at.model, at.x, tets, a, u);
-  sum(at, of_tets, a, b, u, tangent, out);
+  const bool volume = at.model.has_volume && a != 0.0;
+  if (volume) volume_.compute(at.model, at.x, tets, u);
+  sum(at, volume, a, b, u, tangent, out);
 }
 
 void TangentProduct::damping_times(const Configuration& at, std::span<const Vec3> u,
                                    std::span<Vec3> out) {
-  sum(at, {}, 0.0, 1.0, u, Tangent::full, out);
+  sum(at, false, 0.0, 1.0, u, Tangent::full, out);
 }
 
-void TangentProduct::sum(const Configuration& at, std::span<const Vec3> of_tets, double a, double b,
+void TangentProduct::sum(const Configuration& at, bool volume, double a, double b,
                          std::span<const Vec3> u, Tangent tangent, std::span<Vec3> out) {
   const Model& model = at.model;
   const std::span<const Vec3> x = at.x;
@@ -64,7 +64,7 @@ void TangentProduct::sum(const Configuration& at, std::span<const Vec3> of_tets,
     if (model.inverse_mass[n] == 0.0) return;
     out[n] = outer.of(i) - gather_springs(model, spring_force_, i);
     if (network) out[n] -= a * network_force(model, u, i);
-    if (!of_tets.empty()) out[n] -= gather_tets(model, of_tets, i);
+    if (volume) out[n] -= a * volume_.of(model, i);
   });
   if (a != 0.0) add_term_products(at, tangent, a, u, out);
 }

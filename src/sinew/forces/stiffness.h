@@ -23,8 +23,8 @@ class TangentProduct {
   void damping_times(const Configuration& at, std::span<const Vec3> u, std::span<Vec3> out);
 
  private:
-  void sum(const Configuration& at, std::span<const Vec3> of_tets, double a, double b,
-           std::span<const Vec3> u, Tangent tangent, std::span<Vec3> out);
+  void sum(const Configuration& at, bool volume, double a, double b, std::span<const Vec3> u,
+           Tangent tangent, std::span<Vec3> out);
 
   std::vector<Vec3> spring_force_;   // on end 0 of each spring [N] (springs)
   std::vector<Vec3> viscous_force_;  // on a node of a viscous cell [N] (slots)

@@ -22,7 +22,8 @@ double energy_of(Account account, const Configuration& at) {
 
 double elastic_energy(const Configuration& at, std::span<const double> tet_volume) {
   return spring_energy(at.model, at.x) + network_energy(at.model, at.x) +
-         energy_of(Account::elastic, at) + volume_energy(at.model, tet_volume);
+         energy_of(Account::elastic, at) + volume_energy(at.model, tet_volume) +
+         edge_volume_energy(at.model, at.x);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 // Viscosity of the material: a Kelvin-Voigt dashpot parallel to the elastic spring, with the same
 // effect on every mesh. docs/methods/viscosity.md.
 //
-// It acts on the cells of the network law's shear energy, the tets around each edge (edge_cells.h),
-// or on each tet separately if beta is 1. So every oscillation that keeps the volume is damped in
-// proportion to its elastic energy. On single tets, which lock, a bar of 3 cells would be damped
-// 40 % too strongly in torsion.
+// It acts on the cells of the network law's shear energy with the same shares, beta on each tet and
+// 1 - beta on the tets around each edge (edge_cells.h). So every oscillation that keeps the volume
+// is damped in proportion to its elastic energy. On single tets, which lock, a bar of 3 cells would
+// be damped 40 % too strongly in torsion.
 #pragma once
 
 #include <span>
@@ -54,9 +54,6 @@ inline Mat3 viscous_block(const Mat3& F, const Vec3& g_a, const Vec3& g_b, doubl
 void add_viscosity(Model& model, const TetMesh& mesh, const std::vector<Material>& materials,
                    std::span<const int> tet_region, Index first_node, double length);
 
-// Derives the list node -> cells; called once, by finish().
-void finish_viscosity(Model& model);
-
 // Sets `force`, the viscous force on each node of each cell [N] (slots), from positions x and
 // velocities v. Returns the power [W] that viscosity turns into heat.
 double compute_viscous_forces(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v,
@@ -65,9 +62,6 @@ double compute_viscous_forces(const Model& model, std::span<const Vec3> x, std::
 // Only that power, v . C v [W].
 double viscous_power(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v);
 
-// F of a cell at positions x [-].
-Mat3 viscous_deformation(const Model& model, std::span<const Vec3> x, Index cell);
-
 // An upper bound of the row sum of |C_ij| for every node [N s/m] (nodes).
 std::vector<double> viscous_row_sums(const Model& model, std::span<const Vec3> x);
 
@@ -75,9 +69,9 @@ std::vector<double> viscous_row_sums(const Model& model, std::span<const Vec3> x
 // models with viscosity.
 inline Vec3 gather_viscous(const Model& model, const std::vector<Vec3>& force, Index node) {
   Vec3 sum = Vec3::Zero();
-  const auto n = uz(node);
-  for (Index k = model.viscous_start[n]; k < model.viscous_start[n + 1]; ++k) {
-    sum += force[uz(model.viscous_slot[uz(k)])];
+  const GradientCells& cells = model.viscous_cells;
+  for (Index k = cells.node_start[uz(node)]; k < cells.node_start[uz(node) + 1]; ++k) {
+    sum += force[uz(cells.node_slot[uz(k)])];
   }
   return sum;
 }

@@ -6,15 +6,11 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/network.h"
+#include "sinew/forces/volume_cells.h"
 #include "sinew/forces/volume_law.h"
 
 namespace sinew {
 namespace {
-
-// mu of the guard [Pa]: 0 if the tet keeps its own volume.
-double guard_modulus(const Model& model, std::size_t t) {
-  return model.tet_bulk[t] > 0.0 ? 0.0 : model.tet_modulus[t];
-}
 
 double corner_volume(std::span<const Vec3> x, const Tet& t) {
   return signed_volume(x[uz(t[0])], x[uz(t[1])], x[uz(t[2])], x[uz(t[3])]);
@@ -72,7 +68,7 @@ void fill_tet_pressures(const Model& model, std::span<const double> volume,
     const double ratio = volume[t] / model.rest_volume[t];
     pressure[t] = -model.tet_shear[t] + model.tet_bulk[t] * (ratio - 1.0) +
                   mean_of_cells(model, t, cell_pressure) +
-                  guard_pressure(ratio, guard_modulus(model, t));
+                  guard_pressure(ratio, model.tet_guard[t]);
   });
 }
 
@@ -93,29 +89,13 @@ bool is_low(const Model& model, std::size_t t, double volume) {
   return !(volume >= low_ratio * model.rest_volume[t]);
 }
 
-// Sets the share of every node cell in its tets, in proportion to the cell's volume with equal
-// quarters. Equal quarters would make cells of one tet at corners of the mesh, which lock like
-// tets. With these shares the larger neighbours get most of such a tet.
-void share_tets_among_cells(Model& model, const Body& body) {
-  const std::vector<double> quarters = quarter_volumes_of_cells(model, body.tets);
-  for (auto t = uz(body.tets.begin); t < uz(body.tets.end); ++t) {
-    double sum = 0.0;
-    for (const Index c : model.cells[t]) sum += c >= 0 ? quarters[uz(c)] : 0.0;
-    for (std::size_t a = 0; a < 4; ++a) {
-      const Index c = model.cells[t][a];
-      if (c < 0) continue;
-      model.cell_share[t][a] = quarters[uz(c)] / sum;
-      model.cell_volume[uz(c)] += model.cell_share[t][a] * model.rest_volume[t];
-    }
-  }
-}
-
 }  // namespace
 
 void add_volume_terms(Model& model, const Body& body, const std::vector<Material>& materials) {
   const auto end = uz(body.tets.end);
   model.tet_shear.resize(end, 0.0);
   model.tet_bulk.resize(end, 0.0);
+  model.tet_guard.resize(end, 0.0);
   model.tet_modulus.resize(end, 0.0);
   model.cells.resize(end, {-1, -1, -1, -1});
   model.cell_share.resize(end, {0.0, 0.0, 0.0, 0.0});
@@ -123,38 +103,37 @@ void add_volume_terms(Model& model, const Body& body, const std::vector<Material
   for (auto t = uz(body.tets.begin); t < end; ++t) {
     const int region = model.tet_region[t];
     const Material& m = materials[static_cast<std::size_t>(region)];
-    model.tet_modulus[t] = shear_modulus(m.young, m.poisson);
-    if (m.law == Law::neo_hookean) model.tet_shear[t] = model.tet_modulus[t];
     const Volume kept = volume_cells(m);
     const double bulk = volume_stiffness(m);
-    if (kept == Volume::tet) model.tet_bulk[t] = bulk;
+    model.tet_modulus[t] = shear_modulus(m.young, m.poisson);
+    if (m.law == Law::neo_hookean) {
+      model.tet_shear[t] = m.beta * model.tet_modulus[t];
+      model.tet_bulk[t] = m.beta * shear_bulk(m);
+    }
+    if (kept == Volume::tet) model.tet_bulk[t] += bulk;
+    if (kept != Volume::tet) model.tet_guard[t] = model.tet_modulus[t];
     if (kept != Volume::node && m.volume_limit == no_limit) continue;
     for (std::size_t a = 0; a < 4; ++a) {
-      const auto [entry, added] =
-          cell_of.try_emplace({model.tets[t][a], region}, model.cell_count());
+      const auto [entry, added] = cell_of.try_emplace({model.tets[t][a], region},
+                                                      static_cast<Index>(model.cell_bulk.size()));
       if (added) {
-        model.cell_volume.push_back(0.0);
         model.cell_bulk.push_back(kept == Volume::node ? bulk : 0.0);
         model.volume_limit.push_back(m.volume_limit);
       }
       model.cells[t][a] = entry->second;
     }
   }
-  share_tets_among_cells(model, body);
 }
 
-std::vector<double> quarter_volumes_of_cells(const Model& model, Range tets) {
-  std::vector<double> quarters(model.cell_volume.size(), 0.0);
-  for (auto t = uz(tets.begin); t < uz(tets.end); ++t) {
-    for (const Index c : model.cells[t]) {
-      if (c >= 0) quarters[uz(c)] += 0.25 * model.rest_volume[t];
-    }
-  }
-  return quarters;
+bool keeps_volume(const Model& model, Index tet) {
+  const auto t = uz(tet);
+  return model.tet_shear[t] > 0.0 || model.tet_bulk[t] > 0.0 ||
+         std::any_of(model.cells[t].begin(), model.cells[t].end(), [](Index c) { return c >= 0; });
 }
 
 void finish_volume_terms(Model& model) {
-  model.has_volume = !model.cell_volume.empty();
+  choose_cells(model);
+  model.has_volume = !model.cell_volume.empty() || model.edge_cells.count() > 0;
   for (const double limit : model.volume_limit) {
     model.has_volume_limit = model.has_volume_limit || limit < no_limit;
   }
@@ -206,6 +185,7 @@ TetState compute_tet_state(const Model& model, std::span<const Vec3> x, TetState
   fill_tet_volumes(model, x, reuse);
   fill_cell_pressures(model, reuse.volume, reuse.cell_pressure);
   fill_tet_pressures(model, reuse.volume, reuse.cell_pressure, reuse.pressure);
+  compute_edge_state(model, x, reuse.edges);
   return reuse;
 }
 
@@ -268,13 +248,26 @@ std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x
   if (!model.has_volume) return {};
   const std::vector<double> volume = volumes_of_tets(model, x);
   std::vector<double> pressure = pressures_of_tets(model, x);
+  EdgeState edges;
+  compute_edge_state(model, x, edges);
+  // Of each tet the mean over its edge cells, which hold a sixth of it each.
+  std::vector<double> of_edges(model.tets.size(), 0.0);
+  for (std::size_t k = 0; k < model.edge_tet.size(); ++k) {
+    const auto e = uz(model.edge_tet_cell[k]);
+    const Mat3& F = edges.deformation[e];
+    of_edges[uz(model.edge_tet[k])] +=
+        (model.edge_shear[e] * F.squaredNorm() / 3.0 +
+         edge_pressure(F.determinant(), model.edge_shear[e], model.edge_bulk[e]) *
+             F.determinant()) /
+        6.0;
+  }
   parallel_for(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
     const auto g = shape_gradients(model.rest_position, model.tets[t]);
     Mat3 F = Mat3::Zero();
     for (std::size_t a = 0; a < 4; ++a) F += x[uz(model.tets[t][a])] * g[a].transpose();
     pressure[t] = -(model.tet_shear[t] / 3.0 * F.squaredNorm() +
-                    pressure[t] * volume[t] / model.rest_volume[t]);
+                    pressure[t] * volume[t] / model.rest_volume[t] + of_edges[t]);
   });
   return pressure;
 }
@@ -287,7 +280,7 @@ double volume_energy(const Model& model, std::span<const double> volume) {
     const double ratio = volume[t] / rest;
     double w = -model.tet_shear[t] * (ratio - 1.0) +
                0.5 * model.tet_bulk[t] * (ratio - 1.0) * (ratio - 1.0);
-    if (ratio < guard_threshold) w += guard_energy(ratio, guard_modulus(model, t));
+    if (ratio < guard_threshold) w += guard_energy(ratio, model.tet_guard[t]);
     return rest * w;
   });
   const double of_cells = parallel_sum(model.cell_count(), [&](Index i) {
@@ -301,13 +294,12 @@ double volume_energy(const Model& model, std::span<const double> volume) {
 
 double tet_volume_stiffness(const Model& model, std::size_t tet, double volume) {
   const double ratio = volume / model.rest_volume[tet];
-  return model.tet_bulk[tet] + guard_stiffness(ratio, guard_modulus(model, tet));
+  return model.tet_bulk[tet] + guard_stiffness(ratio, model.tet_guard[tet]);
 }
 
 // First the changes of the volumes, then of the pressures, then of the forces.
-std::span<const Vec3> VolumeForceChange::compute(const Model& model, std::span<const Vec3> x,
-                                                 const TetState& tets, double a,
-                                                 std::span<const Vec3> u) {
+void VolumeForceChange::compute(const Model& model, std::span<const Vec3> x, const TetState& tets,
+                                std::span<const Vec3> u) {
   fill_tet_rates(model, tets, u, tet_rate_);
   cell_rate_.resize(model.cell_volume.size());
   parallel_for(model.cell_count(), [&](Index i) {
@@ -328,11 +320,18 @@ std::span<const Vec3> VolumeForceChange::compute(const Model& model, std::span<c
     const std::array<Vec3, 3> d = {u[uz(tet[1])] - u0, u[uz(tet[2])] - u0, u[uz(tet[3])] - u0};
     const Corners& g = tets.gradient[t];
     const Corners dg = volume_gradient_change(e[0], e[1], e[2], d[0], d[1], d[2]);
-    for (std::size_t c = 0; c < 4; ++c) {
-      force_[4 * t + c] = -a * (rate * g[c] + pressure * dg[c]);
-    }
+    for (std::size_t c = 0; c < 4; ++c) force_[4 * t + c] = -(rate * g[c] + pressure * dg[c]);
   });
-  return force_;
+  compute_edge_stress_change(model, tets.edges, u, edge_stress_);
+}
+
+Vec3 VolumeForceChange::of(const Model& model, Index node) const {
+  Vec3 sum = -stress_on_node(model.edge_cells, edge_stress_, node);
+  const auto n = uz(node);
+  for (Index k = model.tet_start[n]; k < model.tet_start[n + 1]; ++k) {
+    sum += force_[uz(model.node_tet[uz(k)])];
+  }
+  return sum;
 }
 
 void rate_cells(const Model& model, const TetVolumes& tets, std::span<const Vec3> u,
@@ -355,7 +354,7 @@ double guard_frequency2(const Model& model, std::span<const LowTet> low) {
     const auto t = uz(tet.tet);
     const double rest = model.rest_volume[t];
     const double ratio = tet.volume / rest;
-    const double stiffness = guard_stiffness(ratio - guard_margin, guard_modulus(model, t));
+    const double stiffness = guard_stiffness(ratio - guard_margin, model.tet_guard[t]);
     if (stiffness == 0.0) continue;
     double sum = 0.0;
     for (std::size_t a = 0; a < 4; ++a) {

@@ -6,28 +6,30 @@
 //
 // so that the force on node i is -sum_{t at i} s_t dv_t/dx_i with the tet's pressure
 //   s_t = -mu_t + kappa_t (v_t/V_t - 1) + (its cells' kappa_c (J_c - 1), by their shares) + guard.
-// docs/methods/volume.md.
+// Edge cells add their own (forces/edge_volume.h). docs/methods/volume.md.
 #pragma once
 
 #include <span>
 #include <vector>
 
+#include "sinew/forces/edge_volume.h"
 #include "sinew/forces/volume_law.h"
 #include "sinew/mesh/tet_mesh.h"
 #include "sinew/model/model.h"
 
 namespace sinew {
 
-// Appends the volume terms of a body's tets, the model's last ones: tet_shear, tet_bulk and the
-// node cells, split by region.
+// Appends the volume terms of a body's tets, the model's last ones: tet_shear, tet_bulk, tet_guard,
+// and a cell for every node and region.
 void add_volume_terms(Model& model, const Body& body, const std::vector<Material>& materials);
 
-// The volume of every node cell [m3] if each tet is divided into equal quarters. The shares of a
-// tet in the cells of its corners (Model::cell_share) are proportional to it.
-std::vector<double> quarter_volumes_of_cells(const Model& model, Range tets);
-
-// Derives the lists cell -> tets and node -> tets; called once, by finish().
+// Removes cells that would lock (choose_cells() in volume.cpp), shares the tets among the others
+// and derives the lists cell -> tets and node -> tets; called once, by finish(), which knows the
+// pins.
 void finish_volume_terms(Model& model);
+
+// Whether some energy keeps the volume of the tet.
+bool keeps_volume(const Model& model, Index tet);
 
 // The volume of every tet and its gradient at given positions; empty if the model has no volume
 // terms.
@@ -40,6 +42,7 @@ struct TetVolumes {
 struct TetState : TetVolumes {
   std::vector<double> pressure;       // s_t [Pa] (tets)
   std::vector<double> cell_pressure;  // kappa_c (J_c - 1) [Pa] (cells)
+  EdgeState edges;
 };
 
 // The results depend on x only. The arrays of `reuse` become those of the result, so a caller that
@@ -76,42 +79,38 @@ inline Vec3 press_tets(const Model& model, std::span<const Corners> gradient,
   return sum;
 }
 
-// -sum_t s_t dv_t/dx_i over the node's tets in their fixed order: the force on it [N].
+// The force of tets, node cells and edge cells on the node [N]: -sum_t s_t dv_t/dx_i over its tets
+// and -sum_e V_e s_e cof F_e g_i over its edge cells, in their fixed order.
 inline Vec3 volume_force(const Model& model, const TetState& tets, Index node) {
-  return -press_tets(model, tets.gradient, tets.pressure, node);
+  return -press_tets(model, tets.gradient, tets.pressure, node) -
+         stress_on_node(model.edge_cells, tets.edges.stress, node);
 }
 
 // Pressure of every tet [Pa] (tets), > 0 under compression: minus the mean Kirchhoff stress,
 //   p = -(mu |F|^2 / 3 + s v/V),   F the tet's deformation gradient,
-// which at small strains is -K (v/V - 1) with the bulk modulus K. For classic springs it is only
-// the pressure of their volume energy. Empty if the model has no volume terms.
+// plus the mean of mu_e |F_e|^2 / 3 + s_e J_e over its edge cells, which at small strains is -K
+// (v/V - 1) with the bulk modulus K. For classic springs it is only the pressure of their volume
+// energy. Empty if the model has no volume terms.
 std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x);
 
-// W [J] of tets with these volumes [m3] (tets): zero at rest.
+// W [J] of tets and node cells with these volumes [m3] (tets): zero at rest.
 double volume_energy(const Model& model, std::span<const double> volume);
 
-// The change of the corner forces due to a displacement u, to first order and with the sign of a
-// force: -a H u [N] (4 per tet). Keeps its arrays between calls.
+// The change of the forces of tets, node cells and edge cells due to a displacement u, to first
+// order. Keeps its arrays between calls.
 class VolumeForceChange {
  public:
-  std::span<const Vec3> compute(const Model& model, std::span<const Vec3> x, const TetState& tets,
-                                double a, std::span<const Vec3> u);
+  void compute(const Model& model, std::span<const Vec3> x, const TetState& tets,
+               std::span<const Vec3> u);
+  // -H u on the node [N].
+  Vec3 of(const Model& model, Index node) const;
 
  private:
   std::vector<double> tet_rate_;   // change of v_t [m3] (tets)
   std::vector<double> cell_rate_;  // change of the pressure [Pa] (cells)
-  std::vector<Vec3> force_;
+  std::vector<Vec3> force_;        // on the corners [N] (4 per tet)
+  std::vector<Mat3> edge_stress_;  // change of V_e s_e cof F_e [J] (edge cells)
 };
-
-// The sum of corner forces (4 per tet) on a node over its tets, in their fixed order.
-inline Vec3 gather_tets(const Model& model, std::span<const Vec3> corner_force, Index node) {
-  Vec3 sum = Vec3::Zero();
-  const auto n = uz(node);
-  for (Index k = model.tet_start[n]; k < model.tet_start[n + 1]; ++k) {
-    sum += corner_force[uz(model.node_tet[uz(k)])];
-  }
-  return sum;
-}
 
 // --- functions for the projection on the cells' volumes (volume_limit.h) ---
 

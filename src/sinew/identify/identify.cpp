@@ -26,7 +26,7 @@ namespace {
 struct IdentifiableLaw {
   std::string_view name;
   Law law = Law::neo_hookean;
-  double beta = -1.0;
+  double beta = default_beta;
   Volume volume = Volume::by_law;
 };
 

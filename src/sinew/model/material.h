@@ -19,8 +19,7 @@ enum class Law {
 
 // The cells whose volume an energy keeps (docs/methods/volume.md).
 enum class Volume {
-  by_law,  // node for neo-hookean and calibrated, tet for neo-hookean with nu < 0, none for the
-           // others
+  by_law,  // node for neo-hookean and calibrated, none for the others
   none,    // no volume is kept
   tet,     // every tet's
   node,    // every node's share of its tets, separately for each region
@@ -41,6 +40,11 @@ enum class Damping {
 
 inline constexpr double no_limit = std::numeric_limits<double>::infinity();
 
+// The share of the tets' own gradients in the network. Edge cells alone are stable, but modes that
+// bend the tets around every edge against each other are then so soft that bodies in contact
+// chatter in implicit steps. A fiftieth costs 0.1 % of accuracy (docs/methods/neo-hookean.md).
+inline constexpr double default_beta = 0.02;
+
 struct Material {
   Law law = Law::neo_hookean;
   double density = 1060.0;        // [kg/m3] > 0
@@ -55,8 +59,8 @@ struct Material {
   double drag = 0.0;           // [1/s] >= 0; force -drag m v on every node
   double stretch_limit = no_limit;   // tau_s [-] > 0: |x_ij| <= (1 + tau_s) l0
   double compress_limit = no_limit;  // tau_c [-] in (0, 1]: |x_ij| >= (1 - tau_c) l0
-  double beta = -1.0;                // [-] in [0, 1]; neo-hookean: share of the tets' own
-                                     // gradients; negative: from poisson
+  double beta = default_beta;        // [-] in [0, 1]; neo-hookean: share of the tets' own
+                                     // gradients
   Volume volume = Volume::by_law;
   double volume_stiffness = -1.0;  // kappa [Pa] of the cells; negative: from young and poisson
   double volume_limit = no_limit;  // [-] > 0: largest |J - 1| of a node cell after a step
@@ -80,28 +84,26 @@ inline double pressure_wave_speed(const Material& m) {
 // The volume cells of a material, with `by_law` resolved.
 inline Volume volume_cells(const Material& m) {
   if (m.volume != Volume::by_law) return m.volume;
-  if (m.law == Law::neo_hookean && m.poisson < 0.0) return Volume::tet;
   return m.law == Law::neo_hookean || m.law == Law::calibrated ? Volume::node : Volume::none;
 }
 
-// The share of the tets' own gradients in the network. Smoothed gradients alone do not resist modes
-// that bend the tets around every edge against each other. The volume energy resists them; the
-// weaker it is (small nu), the more of the tets' own gradients is needed: measured on 400 meshes
-// with slivers, docs/methods/neo-hookean.md. Below nu = 0 nothing locks and the law is the plain
-// linear tet.
-inline double network_beta(const Material& m) {
-  if (m.beta >= 0.0) return m.beta;
-  if (m.poisson < 0.0) return 1.0;
-  return m.poisson < 0.2 ? 0.1 - 0.4 * m.poisson : 0.02;
+// kappa_e [Pa] of the network law's edge cells and tets, the part of its volume stiffness that acts
+// with the shear. With mu the energy of a cell is mu |eps|^2 at small strains, and its volume cells
+// hold the rest, lambda. Below nu = 0 that rest would be negative; with mu/3 the energy of a cell
+// is mu |dev eps|^2, and the rest is the bulk modulus.
+inline double shear_bulk(const Material& m) {
+  const double mu = shear_modulus(m.young, m.poisson);
+  return m.poisson < 0.0 ? mu / 3.0 : mu;
 }
 
-// kappa [Pa] of the volume energy. The network law needs lambda + mu (Smith, de Goes, Kim 2018). An
-// isotropic network of classic springs has lambda = mu by itself and needs lambda - mu.
+// kappa [Pa] of the volume energy of tets or node cells. The network law needs lambda + mu (Smith,
+// de Goes, Kim 2018), less what acts with the shear. An isotropic network of classic springs has
+// lambda = mu by itself and needs lambda - mu.
 inline double volume_stiffness(const Material& m) {
   if (m.volume_stiffness >= 0.0) return m.volume_stiffness;
   const double mu = shear_modulus(m.young, m.poisson);
   const double lambda = lame_lambda(m.young, m.poisson);
-  if (m.law == Law::neo_hookean) return lambda + mu;
+  if (m.law == Law::neo_hookean) return lambda + mu - shear_bulk(m);
   return lambda > mu ? lambda - mu : 0.0;
 }
 

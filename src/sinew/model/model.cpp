@@ -26,6 +26,13 @@ void hash_path(Hash& h, const Path& path) {
   }
 }
 
+void hash_cells(Hash& h, const GradientCells& cells) {
+  h.array(cells.start);
+  h.array(cells.node);
+  h.array(cells.gradient);
+  h.array(cells.volume);
+}
+
 }  // namespace
 
 bool Model::bounces() const {
@@ -53,15 +60,17 @@ std::uint64_t Model::hash() const {
   h.array(compress_limit);
   h.array(network_node);
   h.array(network_stiffness);
+  hash_cells(h, edge_cells);
+  h.array(edge_shear);
+  h.array(edge_bulk);
   h.array(tet_shear);
   h.array(tet_bulk);
+  h.array(tet_guard);
   h.array(cells);
   h.array(cell_share);
   h.array(cell_bulk);
   h.array(volume_limit);
-  h.array(viscous_cell);
-  h.array(viscous_node);
-  h.array(viscous_gradient);
+  hash_cells(h, viscous_cells);
   h.array(viscous_weight);
   h.array(limited);
   h.array(colour_start);

@@ -10,6 +10,7 @@
 
 #include "sinew/base/vec.h"
 #include "sinew/model/contact_surface.h"
+#include "sinew/model/gradient_cells.h"
 #include "sinew/model/material.h"
 #include "sinew/model/obstacle.h"
 #include "sinew/model/path.h"
@@ -121,11 +122,20 @@ struct Model {
   std::vector<Index> network_node;        // j, ascending in each row
   std::vector<double> network_stiffness;  // k_ij [N/m]
 
+  // --- edge cells: the tets of one region around each edge, on which the network's shear acts
+  // (forces/edge_volume.h); empty: none ---
+  GradientCells edge_cells;
+  std::vector<double> edge_shear;  // mu_e [Pa] (edge cells)
+  std::vector<double> edge_bulk;   // kappa_e [Pa] (edge cells)
+  std::vector<Index> edge_tet;     // tet ids, cell by cell: the pairs of an edge cell and its tets
+  std::vector<Index> edge_tet_cell;  // the edge cell (as edge_tet)
+
   // --- volume: the tets' own volume energies, and the cells that tets share ---
   std::vector<double> tet_shear;    // mu_t [Pa] (tets), 0 under classic laws: the outward pressure
-                                    // that balances the network's pull
+                                    // that balances the pull of the tet's own share of the network
   std::vector<double> tet_modulus;  // shear modulus of the material [Pa] (tets), all laws
   std::vector<double> tet_bulk;     // kappa_t [Pa] (tets), 0: the tet's volume is free
+  std::vector<double> tet_guard;    // mu of the guard [Pa] (tets), 0: the tet keeps its own volume
   std::vector<std::array<Index, 4>> cells;        // cell of each corner (tets), -1: none
   std::vector<std::array<double, 4>> cell_share;  // share of the tet in that cell [-] (tets)
   std::vector<double> cell_volume;                // V_c = sum of its tets' shares of V [m3] (cells)
@@ -139,14 +149,9 @@ struct Model {
   std::vector<Index> node_tet;       // 4 t + corner: the node is that corner of tet t
   bool has_volume = false;           // false: no volume energy acts
 
-  // --- viscosity: cells with gradients g_a, F = sum_a x_a g_a^T (forces/viscosity.h); empty if no
-  // tet is viscous. A slot is a node of a cell. ---
-  std::vector<Index> viscous_cell;     // offsets of the cells' slots (cells + 1)
-  std::vector<Index> viscous_node;     // node ids (slots)
-  std::vector<Vec3> viscous_gradient;  // g_a [1/m] (slots)
-  std::vector<double> viscous_weight;  // eta V of the cell [Pa s m3] (cells)
-  std::vector<Index> viscous_start;    // offsets into viscous_slot (nodes + 1)
-  std::vector<Index> viscous_slot;     // slots of the node, ascending
+  // --- viscosity (forces/viscosity.h); empty if no tet is viscous ---
+  GradientCells viscous_cells;
+  std::vector<double> viscous_weight;  // eta V of the cell [Pa s m3] (viscous cells)
 
   // --- limited springs grouped so that no two of a colour share a node ---
   std::vector<Index> limited;       // spring ids, colour by colour
@@ -170,7 +175,6 @@ struct Model {
 
   Index node_count() const { return static_cast<Index>(rest_position.size()); }
   Index tet_count() const { return static_cast<Index>(tets.size()); }
-  Index viscous_cell_count() const { return static_cast<Index>(viscous_weight.size()); }
   Index cell_count() const { return static_cast<Index>(cell_volume.size()); }
   Index spring_count() const { return static_cast<Index>(springs.size()); }
   // Number of nodes that belong to bodies; the anchors of attachments come after them.

@@ -144,7 +144,7 @@ KeyTables make_tables() {
                     number("drag", "1/s", "0", not_negative),
                     number("stretch_limit", "", "inf", positive_or_none),
                     number("compress_limit", "", "inf", {0.0, 1.0, true, false, true}),
-                    number("beta", "", "the law's choice", from_to(0, 1)),
+                    number("beta", "", "0.02", from_to(0, 1)),
                     word("volume", "the law's choice", all_words<Volume>()),
                     number("volume_limit", "", "inf", positive_or_none),
                     number("volume_stiffness", "Pa", "the one of young and poisson", not_negative),

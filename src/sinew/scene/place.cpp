@@ -12,6 +12,7 @@
 #include "sinew/mesh/mend.h"
 #include "sinew/mesh/shapes.h"
 #include "sinew/mesh/size.h"
+#include "sinew/mesh/thin.h"
 #include "sinew/mesh/subdivide.h"
 #include "sinew/scene/filled.h"
 #include "sinew/scene/keys.h"
@@ -220,6 +221,8 @@ PlacedBody place(const Scene& scene, const SceneBody& body) {
   } else if (const auto flat = weight_warning(scene, placed)) {
     warnings.insert(warnings.begin(), *flat);
   }
+  if (const auto thin = thin_warning(placed.mesh); thin && body.material.law == Law::neo_hookean)
+    warnings.push_back(*thin);
   warnings.insert(warnings.end(), placed.notes.remarks.begin(), placed.notes.remarks.end());
   placed.short_step = find_short_step(placed);
   return placed;

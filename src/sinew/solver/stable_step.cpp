@@ -151,6 +151,7 @@ std::vector<double> row_sums(const Model& model, const Field& x) {
     }
   }
   if (!model.has_volume) return sums;
+  add_edge_row_sums(model, x, sums);
   const auto area_norms = [&](std::size_t t) {
     const Tet& tet = model.tets[t];
     const Vec3& x0 = x[uz(tet[0])];

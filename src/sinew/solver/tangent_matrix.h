@@ -18,11 +18,11 @@ namespace sinew {
 //   (K u)_i = D_i u_i + sum_j B_ij (u_i - u_j) + sum_j k_ij (u_i - u_j)
 //             + sum_c G_ci (kappa_c / V_c) sum_j G_cj . u_j + sum_p w_pi T_p sum_j w_pj u_j
 //
-// D: inertia, drag, elements of terms at one node. B: springs, dashpots, network and the tets'
-// blocks between the nodes of their edges. k: the network between nodes that share no edge. G_c:
-// the gradient of a cell's volume. T_p, w_p: block and weights of a contact or of a term's element
-// between nodes. The products use differences of u, so a rigid translation is free of the rounding
-// errors of B.
+// D: inertia, drag, elements of terms at one node. B: springs, dashpots, network, the blocks of
+// tets and of edge cells between their nodes. k: isotropic terms between nodes that share neither.
+// G_c: the gradient of a cell's volume. T_p, w_p: block and weights of a contact or of a term's
+// element between nodes. The products use differences of u, so a rigid translation is free of the
+// rounding errors of B.
 //
 // In single precision: a Newton direction needs few digits, and half the bytes take half the time.
 // The force of Newton's method is in double precision.
@@ -48,14 +48,19 @@ class TangentMatrix {
   void for_each_cell(const F& f) const;
 
  private:
-  // A tet with the edge a < b, and its other two nodes in the order that makes d2v/dx_a dx_b equal
-  // to -[x_d - x_c]_x / 6.
+  // A tet with the edge a < b: the corners a and b, and its other two nodes in the order that makes
+  // d2v/dx_a dx_b equal to -[x_d - x_c]_x / 6.
   struct AroundEdge {
-    Index tet, c, d;
+    Index corner_a, corner_b, c, d;  // 4 t + corner, node ids
   };
-  // A viscous cell with both ends of the edge, and their slots.
-  struct ViscousPair {
+  // A cell with both ends of the edge: the slots of the ends.
+  struct CellPair {
     Index cell, a, b;
+  };
+  // The pairs of slots of all cells, edge by edge.
+  struct CellPairs {
+    std::vector<Index> start;  // (edges + 1); empty: no cells
+    std::vector<CellPair> pair;
   };
   // The contribution of a corner of a tet to the gradient of a cell's volume.
   struct Part {
@@ -63,13 +68,15 @@ class TangentMatrix {
     float share;   // of the tet in the cell [-]
   };
   void find_edges();
+  Index edge_of(Index a, Index b) const;
+  CellPairs pairs_of(const GradientCells& cells) const;
+  void prepare_edge_cells(const Model& model, const TetState& tets);
   void find_far_neighbours();
   void find_cells();
   Mat3 near_block(std::size_t entry) const;
   TangentRows rows() const;
   void assemble_edges(const Objective& objective, const Field& x, const TetState& tets);
-  Mat3 rare_block(const Objective& objective, const Field& x, const TetState& tets,
-                  std::size_t edge) const;
+  Mat3 rare_block(const Objective& objective, const Field& x, std::size_t edge) const;
   void assemble_cells(const Objective& objective, const TetState& tets);
   void assemble_joints(const Objective& objective, const Field& x, double time);
   void add_joint(std::span<const Index> nodes, std::span<const double> weights, const Mat3& block);
@@ -77,8 +84,9 @@ class TangentMatrix {
 
   const Model& model_;
 
-  // Edges: pairs of nodes with a tet or a spring in common.
-  std::vector<Edge> edges_;                         // a < b (edges)
+  // Edges: pairs of nodes with a tet, a cell or a spring in common.
+  std::vector<Edge> edges_;                         // a < b, in ascending order (edges)
+  std::vector<Index> first_edge_;                   // with the lower node a (nodes + 1)
   std::vector<double> edge_network_;                // k_ab of the network [N/m] (edges)
   std::vector<std::array<Index, 2>> edge_entries_;  // of B_ab and B_ba (edges)
   std::vector<Index> edge_tet_start_;               // (edges + 1)
@@ -86,9 +94,13 @@ class TangentMatrix {
   Field4 lagged_;                      // objective.lagged, relative to one of the nodes [m] (nodes)
   Field4 position_;                    // x, relative to one of the nodes [m] (nodes)
   std::vector<float> tet_push_;        // s_t / 6 [Pa] (tets)
-  std::vector<double> tet_stiffness_;  // of tet_volume_stiffness [Pa] (tets)
-  std::vector<Index> edge_viscous_start_;  // (edges + 1), empty if nothing is viscous
-  std::vector<ViscousPair> edge_viscous_;
+  std::vector<float> tet_stiffness_;   // d2W/dv2 of the tets' own energies [Pa/m3] (tets)
+  CellPairs cell_pairs_;               // of the model's edge cells
+  std::vector<Float4> cell_gradient_;  // g_a [1/m] (slots of edge cells)
+  std::vector<Float4> cell_push_at_;   // cof F g_a [1/m] (slots of edge cells)
+  std::vector<Block3> cell_turn_;      // V s F [J] (edge cells)
+  std::vector<float> cell_bulk_;       // V kappa [J] (edge cells)
+  CellPairs viscous_pairs_;
   std::vector<Mat3> viscous_deformation_;  // F of the cells at objective.lagged [-]
   std::vector<double> edge_dashpot_;       // [N s/m] of springs that are only dashpots (edges)
   std::vector<Index> edge_spring_start_, edge_springs_;  // spring ids (edges + 1)

@@ -1,0 +1,78 @@
+"""Scenes whose right value is known independently (tests/data/truth, tests/data/behaviour).
+
+The right values come from formulas, from quadratic tetrahedra with the same energy (CalculiX), or
+from conservation laws. The bounds are what the meshes of these scenes reach.
+"""
+
+import json
+import math
+import unittest
+
+from cli_support import ROOT, CliTest
+
+DATA = ROOT / "tests" / "data"
+
+
+class CaseTest(CliTest):
+    def summary(self, scene, *settings, code=0):
+        sets = [word for setting in settings for word in ("--set", setting)]
+        result = self.run_sinew("run", DATA / scene, "--no-output", "--json", *sets, code=code)
+        return json.loads(result.stdout)
+
+    def near(self, value, right, share):
+        self.assertLessEqual(abs(value / right - 1.0), share, f"{value} instead of {right}")
+
+
+class Truth(CaseTest):
+    def tip(self, poisson, cells):
+        s = self.summary("truth/w4.toml", f"beam.poisson={poisson}",
+                         f"beam.cells=[{cells},{cells},{4 * cells}]")
+        return -s["probes"]["tip"]["displacement"][1]
+
+    def test_tip_of_the_clamped_bar(self):
+        for poisson, right, of_4, of_8 in ((0.0, 0.02786, 0.025, 0.008),
+                                           (0.45, 0.02710, 0.024, 0.008),
+                                           (0.499, 0.02681, 0.037, 0.012)):
+            self.near(self.tip(poisson, 4), right, of_4)
+            self.near(self.tip(poisson, 8), right, of_8)
+
+    # The force of the bonded cube from the work of its top plate.
+    def press(self, scene, poisson):
+        def elastic(move):
+            path = f"pin.top.path=[{{time=0}},{{time=1,move=[0,{-move},0]}}]"
+            return self.summary(scene, path, f"b.poisson={poisson}")["energy"]["elastic"]
+        return (elastic(0.0101) - elastic(0.0099)) / 0.0002
+
+    def test_bonded_cube_does_not_lock(self):
+        self.near(self.press("truth/compress-4.toml", 0.45), 12.92, 0.02)
+        self.near(self.press("truth/compress-4.toml", 0.499), 13.76, 0.07)
+
+    def test_two_materials(self):
+        for poisson, right, share in ((0.0, 5.79e-3, 0.06), (0.45, 5.66e-3, 0.02)):
+            s = self.summary("truth/bar-parallel.toml", f"b.poisson={poisson}",
+                             f"b.region.r2.poisson={poisson}")
+            self.near(math.hypot(*s["probes"]["tip"]["displacement"]), right, share)
+        s = self.summary("truth/nu-press-4.toml")
+        self.near(s["probes"]["mid"]["displacement"][1], -5.70e-3, 0.055)
+
+
+class Sheets(CaseTest):
+    def test_a_free_plate_stays_as_it_is(self):
+        s = self.summary("behaviour/sheet-free.toml")
+        self.assertGreaterEqual(s["energy"]["elastic"], -1e-12)
+        self.assertLess(s["peak_stretch"], 1e-6)
+
+    def test_a_plate_that_is_hardly_touched_stays(self):
+        s = self.summary("behaviour/sheet-unstable.toml", "duration=0.5")
+        self.assertLess(s["peak_stretch"], 1e-5)
+
+    # Between rho g L^4 / (8 E h^2 / 12) = 3.18 mm (beam) and (1 - nu^2) of it (plate).
+    def test_a_strip_bends_as_a_plate(self):
+        s = self.summary("behaviour/sheet.toml", "gravity=[0,-0.005,0]", "s.cells=[25,2,100]")
+        tip = -s["probes"]["tip"]["displacement"][1]
+        self.assertGreater(tip, 0.9 * 2.89e-3)
+        self.assertLess(tip, 1.1 * 3.18e-3)
+
+
+if __name__ == "__main__":
+    unittest.main()
