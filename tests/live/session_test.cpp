@@ -144,7 +144,7 @@ TEST(Live, FromOneKilopascalToOneGigapascalAndBackNothingBlowsUp) {
       frames(s, 1);
       EXPECT_TRUE(s.status().error.empty()) << s.status().error;
       EXPECT_TRUE(finite(s)) << stepper << " at " << young;
-      EXPECT_LT(s.status().max_stretch, 3.0) << stepper << " at " << young;
+      EXPECT_LT(s.status().max_stretch, 4.0) << stepper << " at " << young;
     }
   }
 }

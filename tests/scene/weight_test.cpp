@@ -18,7 +18,7 @@ std::string warnings(const std::string& more, const std::string& top = "") {
   build_model(scene, &report);
   std::string all;
   for (const std::string& w : report.bodies.at(0).warnings) {
-    if (w.find("scale") == std::string::npos) all += w;
+    if (w.find("scale") == std::string::npos && !w.starts_with("thin")) all += w;
   }
   return all;
 }

@@ -19,10 +19,9 @@ namespace sinew {
 
 // The derivative of det F: its columns are the cross products of the other two columns of F.
 inline Mat3 cofactor(const Mat3& F) {
+  const Vec3 x = F.col(0), y = F.col(1), z = F.col(2);
   Mat3 C;
-  C.col(0) = F.col(1).cross(F.col(2));
-  C.col(1) = F.col(2).cross(F.col(0));
-  C.col(2) = F.col(0).cross(F.col(1));
+  C << y.cross(z), z.cross(x), x.cross(y);
   return C;
 }
 

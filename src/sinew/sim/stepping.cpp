@@ -65,12 +65,13 @@ void require_finite(const RunState& run) {
                       std::all_of(s.half_velocity.begin(), s.half_velocity.end(),
                                   [](const Vec3& v) { return v.allFinite(); }));
   if (account && nodes) return;
-  throw Error(ErrorKind::diverged,
-              fmt::format("{} at {:.6g} s, in step {}",
-                          nodes ? "the energy account is no longer finite"
-                                : "the positions are no longer finite",
-                          s.time, s.step),
-              "look for forces, speeds or stiffnesses out of all proportion: they are in SI units");
+  throw Error(
+      ErrorKind::diverged,
+      fmt::format(
+          "{} at {:.6g} s, in step {}",
+          nodes ? "the energy account is no longer finite" : "the positions are no longer finite",
+          s.time, s.step),
+      "look for forces, speeds, stiffnesses or a dt out of all proportion: they are in SI units");
 }
 
 // Rest states differ from frame to frame only where pins, loads, obstacles or tools change with

@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 #include <algorithm>
+#include <cmath>
 
 #include "sinew/forces/spring_law.h"
 #include "sinew/forces/terms.h"
@@ -23,10 +24,11 @@ Mat3 definite(const Mat3& m) {
   return (mean > 0.0 ? mean : 1.0) * Mat3::Identity();
 }
 
-Float4 cross(Float4 a, Float4 b) {
-  const auto yzx = [](Float4 v) { return __builtin_shufflevector(v.lanes, v.lanes, 1, 2, 0, 3); };
-  const Float4::Lanes c = a.lanes * yzx(b) - yzx(a) * b.lanes;
-  return Float4(Float4::Lanes(__builtin_shufflevector(c, c, 1, 2, 0, 3)));
+// sum += a b^T
+void add_outer(Float4 a, Float4 b, Block3& sum) {
+  sum.column[0] += b.lanes[0] * a;
+  sum.column[1] += b.lanes[1] * a;
+  sum.column[2] += b.lanes[2] * a;
 }
 
 // As dashpot_block in spring_law.h.
@@ -78,6 +80,7 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
     parallel_for(model.node_count(),
                  [&](Index i) { lagged_[uz(i)] = Float4(Vec3(lagged[uz(i)] - lagged[0])); });
   }
+  const bool cells = !cell_pairs_.start.empty();
   const bool springs = objective.rate > 0.0 || objective.constraints != nullptr || springs_pull_;
   parallel_for(model.node_count(),
                [&](Index i) { position_[uz(i)] = Float4(Vec3(x[uz(i)] - x[0])); });
@@ -86,25 +89,20 @@ void TangentMatrix::assemble_edges(const Objective& objective, const Field& x,
     const bool rare = viscous || (springs && edge_spring_start_[e] < edge_spring_start_[e + 1]);
     Float4 turn;   // sum of s_t (x_d - x_c) / 6 and of V s F (g_a x g_b)
     Block3 press;  // sum of the tets' and edge cells' k G_a G_b^T
-    const auto add_press = [&press](float k, Float4 g_a, Float4 g_b) {
-      for (int c = 0; c < 3; ++c)
-        press.column[static_cast<std::size_t>(c)] += k * g_b.lanes[c] * g_a;
-    };
     for (auto k = uz(edge_tet_start_[e]); model.has_volume && k < uz(edge_tet_start_[e + 1]); ++k) {
       const AroundEdge& around = edge_tets_[k];
       const auto t = uz(around.corner_a / 4);
       turn += tet_push_[t] * (position_[uz(around.d)] - position_[uz(around.c)]);
       if (tet_stiffness_[t] > 0.0f) {
-        add_press(tet_stiffness_[t], tet_gradient_[uz(around.corner_a)],
-                  tet_gradient_[uz(around.corner_b)]);
+        add_outer(tet_stiffness_[t] * tet_gradient_[uz(around.corner_a)],
+                  tet_gradient_[uz(around.corner_b)], press);
       }
     }
-    for (auto k = uz(cell_pairs_.start.empty() ? 0 : cell_pairs_.start[e]);
-         !cell_pairs_.start.empty() && k < uz(cell_pairs_.start[e + 1]); ++k) {
-      const CellPair& pair = cell_pairs_.pair[k];
-      turn +=
-          cell_turn_[uz(pair.cell)] * cross(cell_gradient_[uz(pair.a)], cell_gradient_[uz(pair.b)]);
-      add_press(cell_bulk_[uz(pair.cell)], cell_push_at_[uz(pair.a)], cell_push_at_[uz(pair.b)]);
+    if (cells) {
+      const auto first = uz(cell_pairs_.start[e]);
+      add_cell_pairs(
+          std::span(cell_pairs_.pair.data() + first, uz(cell_pairs_.start[e + 1]) - first),
+          cell_slots_.data(), cell_turn_.data(), turn, press);
     }
     const auto k = static_cast<float>(edge_network_[e]);
     const float u = turn.lanes[0];
@@ -147,10 +145,10 @@ void TangentMatrix::prepare_edge_cells(const Model& model, const TetState& tets)
   parallel_for(cells.count(), [&](Index i) {
     const EdgeTangent tangent(model, tets.edges, i);
     cell_turn_[uz(i)] = Block3(Mat3(tangent.pressure * tangent.F));
-    cell_bulk_[uz(i)] = static_cast<float>(tangent.bulk);
+    const Mat3 push = std::sqrt(tangent.bulk) * tangent.C;
     const Range slots = cells.slots(i);
     for (auto s = uz(slots.begin); s < uz(slots.end); ++s)
-      cell_push_at_[s] = Float4(Vec3(tangent.C * cells.gradient[s]));
+      cell_slots_[s].push = Float4(Vec3(push * cells.gradient[s]));
   });
 }
 

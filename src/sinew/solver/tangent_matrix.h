@@ -53,10 +53,6 @@ class TangentMatrix {
   struct AroundEdge {
     Index corner_a, corner_b, c, d;  // 4 t + corner, node ids
   };
-  // A cell with both ends of the edge: the slots of the ends.
-  struct CellPair {
-    Index cell, a, b;
-  };
   // The pairs of slots of all cells, edge by edge.
   struct CellPairs {
     std::vector<Index> start;  // (edges + 1); empty: no cells
@@ -91,15 +87,13 @@ class TangentMatrix {
   std::vector<std::array<Index, 2>> edge_entries_;  // of B_ab and B_ba (edges)
   std::vector<Index> edge_tet_start_;               // (edges + 1)
   std::vector<AroundEdge> edge_tets_;
-  Field4 lagged_;                      // objective.lagged, relative to one of the nodes [m] (nodes)
-  Field4 position_;                    // x, relative to one of the nodes [m] (nodes)
-  std::vector<float> tet_push_;        // s_t / 6 [Pa] (tets)
-  std::vector<float> tet_stiffness_;   // d2W/dv2 of the tets' own energies [Pa/m3] (tets)
-  CellPairs cell_pairs_;               // of the model's edge cells
-  std::vector<Float4> cell_gradient_;  // g_a [1/m] (slots of edge cells)
-  std::vector<Float4> cell_push_at_;   // cof F g_a [1/m] (slots of edge cells)
-  std::vector<Block3> cell_turn_;      // V s F [J] (edge cells)
-  std::vector<float> cell_bulk_;       // V kappa [J] (edge cells)
+  Field4 lagged_;                     // objective.lagged, relative to one of the nodes [m] (nodes)
+  Field4 position_;                   // x, relative to one of the nodes [m] (nodes)
+  std::vector<float> tet_push_;       // s_t / 6 [Pa] (tets)
+  std::vector<float> tet_stiffness_;  // d2W/dv2 of the tets' own energies [Pa/m3] (tets)
+  CellPairs cell_pairs_;              // of the model's edge cells
+  std::vector<CellSlot> cell_slots_;  // (slots of edge cells)
+  std::vector<Block3> cell_turn_;     // V s F [J] (edge cells)
   CellPairs viscous_pairs_;
   std::vector<Mat3> viscous_deformation_;  // F of the cells at objective.lagged [-]
   std::vector<double> edge_dashpot_;       // [N s/m] of springs that are only dashpots (edges)

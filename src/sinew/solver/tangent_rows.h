@@ -1,6 +1,7 @@
 // The inner loops of TangentMatrix on plain arrays, compiled for several instruction sets.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "sinew/solver/float4.h"
@@ -37,5 +38,19 @@ void tangent_cells(const TangentRows& rows, const Float4* u, Range cells, float*
 // out_i = (K u)_i for the nodes of the range. Returns the sum of u_i . out_i.
 double tangent_nodes(const TangentRows& rows, const Float4* u, const float* pressure, Range nodes,
                      Float4* out);
+
+// What the blocks between the nodes of an edge cell need (forces/edge_volume.h): g_a [1/m], and
+// sqrt(V kappa) cof F g_a.
+struct CellSlot {
+  Float4 gradient, push;
+};
+// Two nodes of a cell, by their slots.
+struct CellPair {
+  Index cell, a, b;
+};
+// turn += sum V s F (g_a x g_b) and press += sum V kappa (cof F g_a)(cof F g_b)^T over the pairs.
+// cell_turn: V s F (cells).
+void add_cell_pairs(std::span<const CellPair> pairs, const CellSlot* slots, const Block3* cell_turn,
+                    Float4& turn, Block3& press);
 
 }  // namespace sinew

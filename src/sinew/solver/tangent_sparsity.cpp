@@ -132,10 +132,8 @@ void TangentMatrix::find_edges() {
       [&](Index i) { return of_spring[uz(i)]; }, edge_spring_start_, edge_springs_);
 
   cell_pairs_ = pairs_of(model_.edge_cells);
-  for (const Vec3& g : model_.edge_cells.gradient) cell_gradient_.emplace_back(g);
-  cell_push_at_.resize(cell_gradient_.size());
+  for (const Vec3& g : model_.edge_cells.gradient) cell_slots_.push_back({Float4(g), {}});
   cell_turn_.resize(uz(model_.edge_cells.count()));
-  cell_bulk_.resize(cell_turn_.size());
   viscous_pairs_ = pairs_of(model_.viscous_cells);
   viscous_deformation_.resize(uz(model_.viscous_cells.count()));
 
