@@ -273,7 +273,7 @@ TEST(Contact, ImplicitStepsDoNotPassThroughThinObstacles) {
   const std::string plates[] = {
       "shape = \"box\"\nsize = [2, 1e-2, 2]\n", "shape = \"box\"\nsize = [2, 1e-4, 2]\n",
       "shape = \"cylinder\"\naxis = [0, 1, 0]\nradius = 1\nlength = 1e-3\n"};
-  for (const std::string scheme : {"sdirk2", "backward-euler"}) {
+  for (const std::string scheme : {"tr-bdf2", "sdirk2", "backward-euler"}) {
     for (const std::string& plate : plates) {
       for (const double height : {0.2, 0.205, 0.21, 0.215, 0.22}) {
         ContactRun r(parse_scene("duration = 0.5\nstepper = \"implicit\"\nscheme = \"" + scheme +

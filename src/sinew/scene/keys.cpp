@@ -77,7 +77,7 @@ KeyTables make_tables() {
                  text("look_for"),
                  number("duration", "s", "2", positive),
                  word("stepper", "\"verlet\"", all_words<StepperKind>()),
-                 word("scheme", "\"sdirk2\"", all_words<Scheme>()),
+                 word("scheme", "\"tr-bdf2\"", all_words<Scheme>()),
                  word("precision", "\"single\"", all_words<Precision>()),
                  number("tolerance", "", "1e-6", {1e-12, 0.1}),
                  number("budget_ms", "ms", "", positive),

@@ -68,14 +68,15 @@ void refuse_shared_columns(const Scene& scene, const Reader& root) {
 }
 
 // A step that its budget ends early is stable because it still lowers the potential of backward
-// Euler. SDIRK2 needs a converged first stage for its second one.
+// Euler. The other schemes need a converged first stage for their second one.
 void parse_budget(const Reader& root, Scene& scene) {
   if (scene.stepper != StepperKind::implicit && scene.stepper != StepperKind::automatic)
     root.fail("budget_ms",
               fmt::format("stepper = \"{}\" knows no budget_ms", word_of(scene.stepper)),
               "take stepper = \"implicit\", or leave budget_ms out");
-  if (root.has("scheme") && scene.scheme == Scheme::sdirk2)
-    root.fail("scheme", "scheme = \"sdirk2\" does not go with budget_ms",
+  if (root.has("scheme") && scene.scheme != Scheme::backward_euler)
+    root.fail("scheme",
+              fmt::format("scheme = \"{}\" does not go with budget_ms", word_of(scene.scheme)),
               "leave scheme out: with a budget it is \"backward-euler\"");
   scene.scheme = Scheme::backward_euler;
 }

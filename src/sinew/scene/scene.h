@@ -233,7 +233,7 @@ struct Scene {
   std::string look_for;   // a sentence on what to observe
   double duration = 2.0;  // [s]
   StepperKind stepper = StepperKind::verlet;
-  Scheme scheme = Scheme::sdirk2;  // of implicit steps
+  Scheme scheme = Scheme::tr_bdf2;  // of implicit steps
   double tolerance = 1e-6;         // static: residual of a rest state, as a share of the forces
   Precision precision = Precision::single;  // of the forces of tets and springs
   std::optional<double> dt;                 // [s]; absent: "auto"

@@ -19,7 +19,8 @@ constexpr double single_tolerance = 1e-3;
 
 constexpr int most_step_cuts = 10;
 
-const double sdirk2_share = 1.0 - std::sqrt(0.5);  // g: the share of a step in each of its parts
+// d / h, the length of a stage: g / 2 of TR-BDF2 is the same number as g of SDIRK2.
+const double stage_share = 1.0 - std::sqrt(0.5);
 
 // a x + b y of all nodes.
 Field blend(double a, const Field& x, double b, const Field& y) {
@@ -39,25 +40,35 @@ void move_pins(const Model& model, const Controls& controls, State& state) {
   }
 }
 
-// The work of loads, pins, soft obstacles and tools since the time `since`: their forces at the end
-// times the displacement. nodal_force: of the model and the constraints on all nodes at the end
-// [N].
-double work_of_the_outside(const Model& model, const Controls& controls, const Field& before,
-                           double since, const State& state, const Field& nodal_force) {
+// The work of loads, pins, soft obstacles and tools on the displacement u of the nodes, and of the
+// spheres from the time `from` to `to`, with the forces in the configuration `at`. nodal_force: of
+// the model and the constraints on all nodes there [N].
+double work_of_the_outside(const Configuration& at, const Field& nodal_force, const Field& u,
+                           double from, double to) {
   double work = 0.0;
-  for_each_load_force(model, state.position, state.time, [&](Index node, const Vec3& force) {
-    if (model.inverse_mass[uz(node)] > 0.0) {
-      work += force.dot(state.position[uz(node)] - before[uz(node)]);
-    }
+  for_each_load_force(at.model, at.x, at.time, [&](Index node, const Vec3& force) {
+    if (at.model.inverse_mass[uz(node)] > 0.0) work += force.dot(u[uz(node)]);
   });
-  for (const Pin& pin : model.pins) {
-    for (const Index node : pin.nodes) {
-      work -= nodal_force[uz(node)].dot(state.position[uz(node)] - before[uz(node)]);
-    }
+  for (const Pin& pin : at.model.pins) {
+    for (const Index node : pin.nodes) work -= nodal_force[uz(node)].dot(u[uz(node)]);
   }
-  for_each_work_on_spheres(configuration(model, controls, state), since, state.time,
-                           [&](double of_one) { work -= of_one; });
+  for_each_work_on_spheres(at, from, to, [&](double of_one) { work -= of_one; });
   return work;
+}
+
+// A point of a step: the state there and the forces on its nodes [N].
+struct Point {
+  Field x;
+  double time = 0.0;
+  Field nodal_force;
+};
+
+// The work between two points by the trapezoidal rule.
+double work_between(const Model& model, const Controls& controls, const Point& a, const Point& b) {
+  const Field u = blend(1.0, b.x, -1.0, a.x);
+  return 0.5 *
+         (work_of_the_outside({model, controls, a.x, a.time}, a.nodal_force, u, a.time, b.time) +
+          work_of_the_outside({model, controls, b.x, b.time}, b.nodal_force, u, a.time, b.time));
 }
 
 }  // namespace
@@ -71,9 +82,15 @@ ImplicitStepper::ImplicitStepper(const Model& model)
     : model_(model), forces_(model, Precision::double_), linear_(model) {}
 
 void ImplicitStepper::prepare(double h, const Controls& controls, const ImplicitOptions& options) {
-  if (options.scheme == Scheme::sdirk2) h *= sdirk2_share;
+  if (options.scheme != Scheme::backward_euler) h *= stage_share;
   linear_.factor({.model = model_, .controls = controls, .inertia = 1.0 / (h * h), .rate = 1.0 / h},
                  0.0);
+}
+
+ForceEvaluator& ImplicitStepper::evaluator(const ImplicitOptions& options) {
+  if (!options.single || !may_take_single(model_, options.tolerance)) return forces_;
+  if (!in_single_) in_single_.emplace(model_, Precision::single);
+  return *in_single_;
 }
 
 // Backward Euler over h from the positions `from` with `velocity`, dashpots in their directions at
@@ -103,9 +120,7 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
       &inertial, 1.0 / h,  &from,   &lagged, constraints_->empty() ? nullptr : constraints_.get()};
   const NewtonOptions newton_options{
       options.tolerance, options.max_newton, nullptr, {}, options.deadline};
-  const bool single = options.single && may_take_single(model_, options.tolerance);
-  if (single && !in_single_) in_single_.emplace(model_, Precision::single);
-  ForceEvaluator& forces = single ? *in_single_ : forces_;
+  ForceEvaluator& forces = evaluator(options);
   move_pins(model_, controls, state);
   const Field start = state.position;
   const double start_value = options.deadline ? objective_value(objective, state, forces) : 0.0;
@@ -139,12 +154,41 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
   return std::move(newton.nodal_force);
 }
 
-// The heat of dashpots and drag with the scheme's weights, and the work on the displacement from
-// `before`.
-void ImplicitStepper::account(const Controls& controls, const Field& before, double since,
-                              double weight, const Field& nodal_force, State& state) {
-  state.energy.dissipated += weight * damping_power(model_, before, state.half_velocity);
-  state.energy.work_in += work_of_the_outside(model_, controls, before, since, state, nodal_force);
+bool ImplicitStepper::tr_bdf2(double h, const Controls& controls, const ImplicitOptions& options,
+                              State& state, StepReport& report) {
+  const double g = 2.0 - std::sqrt(2.0);
+  const double d = stage_share * h;
+  const Field v = state.half_velocity;
+  const NodalForces& at_start = evaluator(options).evaluate(controls, state);
+  const Point start{state.position, state.time, at_start.force};
+  Field a = at_start.force;
+  parallel_for(model_.node_count(), [&](Index i) { a[uz(i)] *= model_.inverse_mass[uz(i)]; });
+  // As a Runge-Kutta method its weights are sqrt(2)/4, sqrt(2)/4 and d / h.
+  double heat = 0.25 * std::sqrt(2.0) * h * at_start.heat;
+
+  state.time = start.time + g * h;
+  auto nodal_force = solve(blend(1.0, start.x, d, v), blend(1.0, v, d, a), d, start.x, g * h,
+                           controls, options, state, report);
+  if (!nodal_force) return false;
+  if (any_active(state.reactions)) return true;
+  const Point middle{state.position, state.time, std::move(*nodal_force)};
+  const Field v1 = state.half_velocity;
+  heat += 0.25 * std::sqrt(2.0) * h * damping_power(model_, start.x, v1);
+
+  // The second stage starts from extrapolated positions, which may be beyond a thin body or
+  // obstacle. Contacts are searched from the end of the first stage. One that acts leads to
+  // backward Euler.
+  const double c = 1.0 / (g * (2.0 - g));
+  state.time = start.time + h;
+  nodal_force = solve(blend(c, middle.x, 1.0 - c, start.x), blend(c, v1, 1.0 - c, v), d, middle.x,
+                      (1.0 - g) * h, controls, options, state, report);
+  if (!nodal_force) return false;
+  const Point end{state.position, state.time, std::move(*nodal_force)};
+  heat += d * damping_power(model_, middle.x, state.half_velocity);
+  state.energy.dissipated += heat;
+  state.energy.work_in +=
+      work_between(model_, controls, start, middle) + work_between(model_, controls, middle, end);
+  return true;
 }
 
 bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitOptions& options,
@@ -152,23 +196,25 @@ bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitO
   const Field x = state.position;
   const Field v = state.half_velocity;
   const double time = state.time;
-  const double g = sdirk2_share;
+  const double g = stage_share;
   state.time = time + g * h;
   auto nodal_force = solve(x, v, g * h, x, g * h, controls, options, state, report);
   if (!nodal_force) return false;
   if (any_active(state.reactions)) return true;
   const Field v1 = state.half_velocity;
-  account(controls, x, time, (1.0 - g) * h, *nodal_force, state);
-  const Field x1 = state.position;
+  const Point middle{state.position, state.time, std::move(*nodal_force)};
+  state.energy.dissipated += (1.0 - g) * h * damping_power(model_, x, v1);
+  state.energy.work_in +=
+      work_of_the_outside({model_, controls, middle.x, middle.time}, middle.nodal_force,
+                          blend(1.0, middle.x, -1.0, x), time, middle.time);
   state.time = time + h;
-  // The second part starts from extrapolated positions, which may be beyond a thin body or
-  // obstacle. Contacts are searched from the end of the first part. One that acts leads to backward
-  // Euler.
   nodal_force =
       solve(blend(1.0, x, (1.0 - g) * h, v1), blend(1.0 - (1.0 - g) / g, v, (1.0 - g) / g, v1),
-            g * h, x1, (1.0 - g) * h, controls, options, state, report);
+            g * h, middle.x, (1.0 - g) * h, controls, options, state, report);
   if (!nodal_force) return false;
-  account(controls, x1, time + g * h, g * h, *nodal_force, state);
+  const Point end{state.position, state.time, std::move(*nodal_force)};
+  state.energy.dissipated += g * h * damping_power(model_, middle.x, state.half_velocity);
+  state.energy.work_in += work_between(model_, controls, middle, end);
   return true;
 }
 
@@ -180,7 +226,10 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
   state.time += h;
   const auto nodal_force = solve(x, v, h, x, h, controls, options, state, report);
   if (!nodal_force) return false;
-  account(controls, x, state.time - h, h, *nodal_force, state);
+  state.energy.dissipated += h * damping_power(model_, x, state.half_velocity);
+  state.energy.work_in +=
+      work_of_the_outside({model_, controls, state.position, state.time}, *nodal_force,
+                          blend(1.0, state.position, -1.0, x), state.time - h, state.time);
   if (constraints_->empty()) return true;
   // The work of the impulses of contacts and limits uses the mean of the velocities before and
   // after the step, as in Verlet's energy balance: it is 0 for a body at rest.
@@ -199,9 +248,12 @@ bool ImplicitStepper::try_step(double h, const Controls& controls, const Implici
                                State& state, StepReport& report) {
   state.last_step = 0.0;  // the velocity is that at state.time
   bool done = false;
-  if (options.scheme == Scheme::sdirk2 && !any_active(state.reactions)) {
+  if (options.scheme != Scheme::backward_euler && !any_active(state.reactions)) {
     const State before = state;
-    if (!sdirk2(h, controls, options, state, report)) return false;
+    const bool found = options.scheme == Scheme::tr_bdf2
+                           ? tr_bdf2(h, controls, options, state, report)
+                           : sdirk2(h, controls, options, state, report);
+    if (!found) return false;
     done = !any_active(state.reactions);
     if (!done) state = before;
   }

@@ -15,7 +15,7 @@
 namespace sinew {
 
 struct ImplicitOptions {
-  Scheme scheme = Scheme::sdirk2;
+  Scheme scheme = Scheme::tr_bdf2;
   double tolerance = 1e-6;  // see NewtonReport::residual
   int max_newton = 50;      // Newton steps before the step is cut in half
   bool single = false;      // forces in single precision if may_take_single()
@@ -35,15 +35,21 @@ class ImplicitStepper {
   //   |x - y|_M^2 / (2 h^2) + E(x) + (x - x_n) . C (x - x_n) / (2 h),   y = x_n + h v_n,
   //
   // E all energies with pins, loads and obstacles at the time t + h, C the dashpots in their
-  // directions at x_n; then v = (x - x_n) / h (Martin et al. 2011). SDIRK2 (Alexander 1977) takes
-  // two such steps of g h, g = 1 - sqrt(1/2): the first from x_n and v_n gives v_1, the second
-  // starts from x_n + (1 - g) h v_1 and v_n + (1 - g)/g (v_1 - v_n). Both schemes are L-stable.
-  // Dashpots and drag use the velocity at the end of the (part) step.
+  // directions at x_n; then v = (x - x_n) / h (Martin et al. 2011). The other schemes take two such
+  // stages of length d from other positions and velocities:
+  //
+  //   TR-BDF2 (Bank et al. 1985), g = 2 - sqrt(2), d = g h / 2: the trapezoidal rule over g h, from
+  //   x_n + d v_n and v_n + d a_n, gives x_1, v_1; then from (x_1, v_1) / (g (2 - g)) less
+  //   (x_n, v_n) (1 - g)^2 / (g (2 - g));
+  //   SDIRK2 (Alexander 1977), g = 1 - sqrt(1/2), d = g h: from x_n and v_n gives v_1; then from
+  //   x_n + (1 - g) h v_1 and v_n + (1 - g)/g (v_1 - v_n).
+  //
+  // All schemes are L-stable. Dashpots and drag use the velocity at the end of the stage.
   //
   // Contacts, with friction, and limits hold at the end of the step (solver/constraints.h). A step
-  // in which one of them acts is a step of backward Euler: SDIRK2 would carry the change of
-  // velocity by an impact in its first part into the second, multiplied by (1 - g)/g = 2.4, and
-  // throw the body back. Impacts are plastic for any restitution.
+  // in which one of them acts is a step of backward Euler: a second stage would carry on the change
+  // of velocity by an impact in the first one, multiplied (SDIRK2: by (1 - g)/g = 2.4), and throw
+  // the body back. Impacts are plastic for any restitution.
   //
   // A tangled body (forces/inversion_recovery.h) is pulled back towards its rest shape instead.
   //
@@ -66,12 +72,13 @@ class ImplicitStepper {
                      const ImplicitOptions& options, State& state);
   bool try_step(double h, const Controls& controls, const ImplicitOptions& options, State& state,
                 StepReport& report);
+  bool tr_bdf2(double h, const Controls& controls, const ImplicitOptions& options, State& state,
+               StepReport& report);
   bool sdirk2(double h, const Controls& controls, const ImplicitOptions& options, State& state,
               StepReport& report);
   bool backward_euler(double h, const Controls& controls, const ImplicitOptions& options,
                       State& state, StepReport& report);
-  void account(const Controls& controls, const Field& before, double since, double weight,
-               const Field& nodal_force, State& state);
+  ForceEvaluator& evaluator(const ImplicitOptions& options);
   std::optional<Field> solve(const Field& from, const Field& velocity, double h, const Field& path,
                              double path_time, const Controls& controls,
                              const ImplicitOptions& options, State& state, StepReport& report);

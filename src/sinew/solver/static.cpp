@@ -126,11 +126,15 @@ struct Resting {
   HalfSpace plane;
 };
 
-// The groups that rest on a plane. Throws for a body that nothing holds: it can only rest if the
-// forces on it cancel each other, or press it along the normal of one plane. `force`: the outer
-// forces [N] (nodes).
-std::vector<Resting> resting_groups(const Model& model, const Controls& controls, double time,
-                                    const Field& force) {
+// How bodies rest that no pin holds: pressed along the normal of one plane each, or, if that is not
+// all, by contacts with each other, by friction or by obstacles of other shapes. Throws for a body
+// that nothing can hold. `force`: the outer forces [N] (nodes).
+struct Support {
+  std::vector<Resting> on_planes;
+  bool by_contact = false;
+};
+Support find_support(const Model& model, const Controls& controls, double time,
+                     const Field& force) {
   const std::vector<Index> unheld = unheld_groups(model, controls);
   std::vector<Vec3> net(unheld.size(), Vec3::Zero());
   std::vector<double> size(unheld.size(), 0.0);
@@ -141,28 +145,33 @@ std::vector<Resting> resting_groups(const Model& model, const Controls& controls
       size[uz(unheld[b])] += force[i].norm();
     }
   }
-  std::vector<Resting> out;
+  Support out;
+  const bool may_touch =
+      model.body_contact && model.body_contact->bodies && model.bodies.size() > 1;
+  const bool obstacles = std::any_of(model.obstacles.begin(), model.obstacles.end(),
+                                     [](const Obstacle& o) { return o.hard(); });
   for (std::size_t b = 0; b < unheld.size(); ++b) {
     if (unheld[b] < 0) continue;
     const auto g = uz(unheld[b]);
     Vec3 lacks = net[g];
-    bool planes = false;
     HalfSpace best;
     for_each_hard_plane(model, controls, time, [&](const HalfSpace& plane) {
-      planes = true;
       const Vec3 left = net[g] - std::min(0.0, plane.normal.dot(net[g])) * plane.normal;
       if (!(left.norm() < lacks.norm())) return;
       lacks = left;
       best = plane;
     });
+    const bool pushed = net[g].norm() > 1e-6 * size[g];
+    out.by_contact = out.by_contact || (pushed && may_touch);
     if (lacks.norm() > 1e-6 * size[g]) {
+      out.by_contact = out.by_contact || obstacles;
+      if (out.by_contact) continue;
       throw Error(ErrorKind::input,
-                  fmt::format("body '{}' has no rest state: nothing holds it against {:.4g} N{}",
-                              model.bodies[b].name, lacks.norm(),
-                              planes ? " (rest states ignore friction)" : ""),
+                  fmt::format("body '{}' has no rest state: nothing holds it against {:.4g} N",
+                              model.bodies[b].name, lacks.norm()),
                   "pin it, attach it, or take stepper = \"verlet\" or \"implicit\"");
     }
-    if (g == b && net[g].norm() > 1e-6 * size[g]) out.push_back({g, best});
+    if (g == b && pushed) out.on_planes.push_back({g, best});
   }
   return out;
 }
@@ -316,10 +325,35 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
   state.last_step = 0.0;
   state.time = time;  // for the loads; the pins follow below
+  const Support support =
+      find_support(model_, controls, time, outer_forces(model_, controls, state));
   const std::vector<Resting> resting =
-      resting_groups(model_, controls, time, outer_forces(model_, controls, state));
+      support.by_contact ? std::vector<Resting>{} : support.on_planes;
   proximal_stiffness_ = resting.empty() ? 0.0 : proximal_stiffness(model_, controls);
   put_at_rest_shape(model_, find_tangled(model_, find_low_tets(model_, state.position)), state);
+
+  if (support.by_contact) {
+    report.products = move_pins_to(controls, start_time, time, 1.0, state);
+    report.load_steps = 1;
+    const NewtonReport rest = rest_by_contact(controls, options, {1, 1.0, 0, 0.0}, state);
+    report.newton = rest.newton;
+    report.products += rest.products;
+    report.residual = rest.residual;
+    report.contacts = contacts_at_rest_;
+    report.limits_met = rest.within;
+    report.stopped = rest.stopped;
+    if (!rest.rests && !rest.stopped) {
+      throw Error(ErrorKind::diverged,
+                  fmt::format("no rest state found: after {} Newton steps of bodies in contact, "
+                              "the force that still moves them is {:.3g} of the load",
+                              rest.newton, rest.residual),
+                  "put the bodies nearer to their rest, hold one of them, or take stepper = "
+                  "\"verlet\" with drag");
+    }
+    state.half_velocity.assign(state.position.size(), Vec3::Zero());
+    ++state.step;
+    return report;
+  }
 
   // The dead force makes the start of the solve a rest state, so the change to the new loads can be
   // cut into small steps.

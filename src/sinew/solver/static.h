@@ -44,7 +44,9 @@ class StaticSolver {
   //
   // Contacts, without friction, and limits hold in the rest state (solver/constraints.h). A body
   // that only a hard plane holds, the ground or an obstacle, is first moved along the plane's
-  // normal onto it. Along the plane it stays as near to its place as possible.
+  // normal onto it. Along the plane it stays as near to its place as possible. Bodies that lie on
+  // each other, or that friction holds, sink to rest from their place instead, with friction
+  // (rest_by_contact.cpp).
   //
   // If Newton's method does not converge, pins and loads are applied in smaller steps; after two
   // cuts dynamic relaxation is tried once. Throws Error(input) if nothing holds a body against the
@@ -63,6 +65,8 @@ class StaticSolver {
   ForceEvaluator& forces() { return forces_; }
 
  private:
+  NewtonReport rest_by_contact(const Controls& controls, const StaticOptions& options,
+                               StaticProgress progress, State& state);
   NewtonReport relax_dynamically(const Controls& controls, double start_time, double time,
                                  const StaticOptions& options, StaticProgress progress,
                                  State& state);
@@ -76,6 +80,7 @@ class StaticSolver {
   double proximal_stiffness_ = 0.0;  // see settle() [1/s2]; 0 if no body rests on a plane alone
   LinearSolver linear_;
   Constraints constraints_;
+  Index contacts_at_rest_ = 0;  // of rest_by_contact()
   // The model with a less stiff volume, if that helps; else none.
   struct Softened {
     Model model;

@@ -41,7 +41,7 @@ struct FirstStep {
 };
 
 struct StepperOptions {
-  Scheme scheme = Scheme::sdirk2;
+  Scheme scheme = Scheme::tr_bdf2;
   double tolerance = 1e-6;  // of rest states and implicit steps, see NewtonReport::residual
   Precision precision = Precision::single;
 };

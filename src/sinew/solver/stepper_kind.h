@@ -23,11 +23,14 @@ constexpr std::array<Word<StepperKind>, 4> words_of(StepperKind) {
 
 // The scheme of implicit steps.
 enum class Scheme {
+  tr_bdf2,         // second order, hardly damps swings and turning, two solves per step
+  sdirk2,          // second order, hardly damps swings, two solves per step
   backward_euler,  // first order, damps every oscillation
-  sdirk2           // second order, hardly damps, two solves per step
 };
-constexpr std::array<Word<Scheme>, 2> words_of(Scheme) {
-  return {{{Scheme::sdirk2, "sdirk2"}, {Scheme::backward_euler, "backward-euler"}}};
+constexpr std::array<Word<Scheme>, 3> words_of(Scheme) {
+  return {{{Scheme::tr_bdf2, "tr-bdf2"},
+           {Scheme::sdirk2, "sdirk2"},
+           {Scheme::backward_euler, "backward-euler"}}};
 }
 
 }  // namespace sinew
