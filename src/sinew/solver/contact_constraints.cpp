@@ -13,9 +13,6 @@ namespace {
 // shares of the mean edge. Planes are included at any distance: see ContactReach.
 constexpr double depth_tolerance = 1e-4;
 constexpr double reach_share = 0.05;
-// The number of passes that find all contacts again; later passes only add contacts.
-constexpr int free_passes = 6;
-
 template <typename F>
 void for_each_node(const Contact& c, const F& f) {
   for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) f(uz(c.node[a]), c.weight[a]);
@@ -72,7 +69,7 @@ ContactConstraints::Constraint ContactConstraints::constraint_of(const Contact& 
 void ContactConstraints::find(const Controls& controls, const std::vector<Vec3>& x) {
   finder_->find(controls, from_ != nullptr ? *from_ : here_, x, before_, now_, {reach_, no_limit},
                 found_);
-  if (passes_ > free_passes) {
+  if (passes_ > 0) {
     add_new();
     return;
   }

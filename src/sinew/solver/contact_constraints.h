@@ -14,10 +14,10 @@ namespace sinew {
 
 // A constraint gap >= 0 with friction for every contact found. Within a pass of
 // minimise_augmented_lagrangian the nodes, weights and normals of the contacts do not change, so
-// the objective is smooth and has a tangent; update() finds the contacts again. After some passes
-// update() only adds contacts: in a fold two contacts could alternate between two faces for ever.
-// Contacts keep their force between passes and steps by their id, or by the feature if the partner
-// has changed.
+// the objective is smooth and has a tangent; update() only adds contacts. (If it found all contacts
+// again, those of flush bodies and of folds would alternate between faces for ever: two boxes on
+// each other took 56 s instead of 8 s for a second.) Contacts keep their force between steps by
+// their id, or by the feature if the partner has changed.
 class ContactConstraints {
  public:
   // compliance: of the nodes [m/N]; ratio: of a contact's stiffness to the resistance of its nodes;

@@ -29,6 +29,7 @@ constexpr int cuts_before_falling = 2;  // then dynamic relaxation is tried, onc
 // s.
 constexpr double load_accuracy = 0.02;
 constexpr double most_work = 2e8;
+constexpr int most_halves = 5;  // of the load of bodies in contact
 
 // The largest rotation angle [rad] of a pin between two times.
 double pins_turn(const Controls& controls, double from, double to) {
@@ -337,6 +338,39 @@ int StaticSolver::move_pins_to(const Controls& controls, double start_time, doub
   return products;
 }
 
+// Rest by contact under the whole load; if there is none, the share of the load that rests is
+// searched for the message.
+StepReport StaticSolver::settle_by_contact(const Controls& controls, const StaticOptions& options,
+                                           StepReport report, State& state) {
+  const State start = state;
+  const auto rest = [&](double share) {
+    state = start;
+    ++report.load_steps;
+    const StaticProgress progress{report.load_steps, share, report.newton, 0.0};
+    const NewtonReport found = rest_by_contact(controls, share, options, progress, state);
+    report.newton += found.newton;
+    report.products += found.products;
+    report.residual = found.residual;
+    report.limits_met = found.within;
+    report.stopped = found.stopped;
+    return found.rests || found.stopped;
+  };
+  if (!rest(1.0)) {
+    double rests = 0.0;
+    double fails = 1.0;
+    for (int halves = 0; halves < most_halves; ++halves) {
+      const double share = 0.5 * (rests + fails);
+      (rest(share) ? rests : fails) = share;
+      if (report.stopped) break;
+    }
+    if (!report.stopped) throw_no_rest(rests, fails, report);
+  }
+  report.contacts = contacts_at_rest_;
+  state.half_velocity.assign(state.position.size(), Vec3::Zero());
+  ++state.step;
+  return report;
+}
+
 StepReport StaticSolver::solve(const Controls& controls, double time, const StaticOptions& options,
                                State& state) {
   StepReport report;
@@ -353,25 +387,7 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
 
   if (support.by_contact) {
     report.products = move_pins_to(controls, start_time, time, 1.0, state);
-    report.load_steps = 1;
-    const NewtonReport rest = rest_by_contact(controls, options, {1, 1.0, 0, 0.0}, state);
-    report.newton = rest.newton;
-    report.products += rest.products;
-    report.residual = rest.residual;
-    report.contacts = contacts_at_rest_;
-    report.limits_met = rest.within;
-    report.stopped = rest.stopped;
-    if (!rest.rests && !rest.stopped) {
-      throw Error(ErrorKind::diverged,
-                  fmt::format("no rest state found: after {} Newton steps of bodies in contact, "
-                              "the force that still moves them is {:.3g} of the load",
-                              rest.newton, rest.residual),
-                  "put the bodies nearer to their rest, hold one of them, or take stepper = "
-                  "\"verlet\" with drag");
-    }
-    state.half_velocity.assign(state.position.size(), Vec3::Zero());
-    ++state.step;
-    return report;
+    return settle_by_contact(controls, options, report, state);
   }
 
   // The dead force makes the start of the solve a rest state, so the change to the new loads can be
@@ -428,7 +444,7 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
     ++cuts;
     const double failed = next;
     if (failures++ == 0) products_before = report.products;
-    const double work = static_cast<double>(report.products - products_before) *
+    const double work = static_cast<double>(report.products - falls.products - products_before) *
                         static_cast<double>(model_.node_count());
     if (failed - done < load_accuracy || work > most_work ||
         report.newton - falls.newton > options.most_newton) {

@@ -65,8 +65,10 @@ class StaticSolver {
   ForceEvaluator& forces() { return forces_; }
 
  private:
-  NewtonReport rest_by_contact(const Controls& controls, const StaticOptions& options,
+  NewtonReport rest_by_contact(const Controls& controls, double share, const StaticOptions& options,
                                StaticProgress progress, State& state);
+  StepReport settle_by_contact(const Controls& controls, const StaticOptions& options,
+                               StepReport report, State& state);
   NewtonReport relax_dynamically(const Controls& controls, double start_time, double time,
                                  const StaticOptions& options, StaticProgress progress,
                                  State& state);
