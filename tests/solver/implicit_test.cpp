@@ -62,7 +62,7 @@ TEST(Implicit, SchemesOfTwoStagesAreOfSecondOrder) {
 // Under 0.1 % in ten periods of 40 steps.
 TEST(Implicit, SchemesOfTwoStagesKeepASwing) {
   const double period = 2.0 * std::numbers::pi / 5.0;
-  for (const auto [scheme, loss] :
+  for (const auto& [scheme, loss] :
        {std::pair(Scheme::tr_bdf2, 0.00084), std::pair(Scheme::sdirk2, 0.00089)}) {
     const State s = run(oscillator(), period / 40, 400, scheme);
     const double amplitude = std::hypot(s.position[1].x() - 1.0, s.half_velocity[1].x() / 5.0);

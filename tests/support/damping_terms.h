@@ -61,7 +61,7 @@ struct DashpotTerm {
 
 struct ViscosityTerm {
   static double power(const Configuration& at, std::span<const Vec3> v) {
-    return viscous_power(at.model, at.x, v);
+    return viscous_power(at.model, at.x, v, v);
   }
   static void add_forces(const Configuration& at, std::span<const Vec3> v, std::span<Vec3> forces) {
     for_each_block(at,

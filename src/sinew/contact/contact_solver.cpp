@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sinew/contact/restitution.h"
+
 namespace sinew {
 namespace {
 
@@ -16,10 +18,6 @@ constexpr double small = 5e-4;  // share of the largest impulse; smaller changes
 // at most at this speed [m/s]: overlaps at the start of a run do not burst apart.
 constexpr double share_out = 0.2;
 constexpr double speed_out = 0.1;
-
-// The energy that bounces may seem to create, as a share of the kinetic energy before them. The
-// energy balance of a step with spring forces is no more accurate than this.
-constexpr double seems_made = 0.05;
 
 // The relative velocity of a contact [m/s].
 inline Vec3 relative(const Impact& i, const std::vector<Vec3>& v) {
@@ -68,24 +66,23 @@ double least_without_bounce(const Arrival& arrival, double h) {
 }
 
 // Sets the velocity along the normal that a contact must end with.
-void aim(const Model& model, const std::vector<Vec3>& force, double h, const Vec3& velocity,
-         Impact& impact, Arrival& arrival) {
+void aim(const Model& model, const std::vector<Vec3>& force, double mean_step, double h,
+         const Vec3& velocity, Impact& impact, Arrival& arrival) {
   const Contact& c = *arrival.contact;
-  arrival.bounces = arrival.known = false;
+  arrival.known = false;
   impact.speed = Vec3::Zero();
   if (c.id.obstacle() >= 0) impact.speed = c.anchor_displacement / h;
   arrival.velocity = c.normal.dot(velocity - impact.speed);
-  if (c.restitution > 0.0 && c.gap < 0.0) {
-    arrival.acceleration = acceleration(model, c, force);
-    arrival.after = rebound(c.gap, arrival.velocity, arrival.acceleration, h, c.restitution);
-    arrival.bounces = arrival.after.velocity > 0.0;
-  }
-  impact.least = arrival.bounces ? arrival.after.velocity : least_without_bounce(arrival, h);
+  impact.least = least_without_bounce(arrival, h);
+  if (c.restitution == 0.0 || !(c.gap < 0.0)) return;
+  const double before = arrival.velocity - mean_step * acceleration(model, c, force);
+  impact.least = std::max(impact.least, velocity_after_impact(before, c.restitution));
 }
 
 // Fills impacts, arrivals and the slots of their nodes.
 void find_impacts(const Model& model, const std::vector<Contact>& contacts,
-                  const std::vector<Vec3>& force, double h, const State& state, ContactScratch& s) {
+                  const std::vector<Vec3>& force, double mean_step, double h, const State& state,
+                  ContactScratch& s) {
   s.node.assign(1, -1);
   s.predicted.assign(1, Vec3::Zero());
   s.slot.resize(model.inverse_mass.size(), 0);
@@ -118,7 +115,7 @@ void find_impacts(const Model& model, const std::vector<Contact>& contacts,
     impact.impulse = 0.0;
     impact.friction_impulse = Vec3::Zero();
     s.arrivals[n].contact = &c;
-    aim(model, force, h, velocity, impact, s.arrivals[n]);
+    aim(model, force, mean_step, h, velocity, impact, s.arrivals[n]);
     ++n;
   }
   s.impacts.resize(n);
@@ -201,100 +198,11 @@ int exchange_all(ContactScratch& s) {
   }
 }
 
-// The energy loss of a single impact in free flight, minus the loss by the mean of the velocities:
-// the mean does not know the time of the impact within the step. [J]
-double impact_time_correction(const Impact& i, const Arrival& a, double mean_step) {
-  if (!a.bounces) return 0.0;
-  const double alone = i.mass * (a.after.velocity - a.velocity);  // impulse
-  if (!(alone > 0.0)) return 0.0;
-  const double mean = 0.5 * (a.velocity - mean_step * a.acceleration + a.after.velocity);
-  return std::min(1.0, i.impulse / alone) * (i.mass * a.after.loss + alone * mean);
-}
-
 // The velocity of a slot's node before the forces of the step [m/s].
 Vec3 velocity_before(const Model& model, const std::vector<Vec3>& force, double mean_step,
                      const ContactScratch& s, std::size_t slot) {
   const auto i = uz(s.node[slot]);
   return s.predicted[slot] - (mean_step * model.inverse_mass[i]) * force[i];
-}
-
-// The work of the impulses, with the mean of the velocities of the half-steps before and after,
-// minus the work of moving colliders. [J]
-double work_within(const Model& model, const std::vector<Vec3>& force, double mean_step,
-                   const ContactScratch& s) {
-  double work = 0.0;
-  for (std::size_t k = 1; k < s.node.size(); ++k) {
-    const auto i = uz(s.node[k]);
-    if (model.inverse_mass[i] == 0.0) continue;
-    const Vec3 twice = velocity_before(model, force, mean_step, s, k) + s.velocity[k];
-    work += 0.5 * model.mass[i] * (s.velocity[k] - s.predicted[k]).dot(twice);
-  }
-  for (const Impact& i : s.impacts)
-    work -= (i.impulse * i.normal + i.friction_impulse).dot(i.speed);
-  return work;
-}
-
-// The energy that the bounces have created, minus the energy that they took, if it exceeds the
-// tolerance; otherwise 0. Of the contacts that do not bounce, only those count that would have
-// separated by themselves and that the bounces of others have pushed together. The other contacts
-// balance forces, which do as much work. [J]
-double energy_of_bounces(const ContactScratch& s, double mean_step) {
-  double brought = 0.0;
-  double made = 0.0;
-  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
-    const Impact& i = s.impacts[k];
-    const Arrival& a = s.arrivals[k];
-    if (!a.bounces && !(a.velocity > 0.0)) continue;
-    const double after = i.normal.dot(relative(i, s.velocity) - i.speed);
-    if (a.bounces) {
-      brought += 0.5 * i.mass * a.velocity * a.velocity;
-      const double before = a.velocity - mean_step * a.acceleration;
-      made += i.impulse * 0.5 * (before + after) - impact_time_correction(i, a, mean_step);
-    } else {
-      made += i.impulse * 0.5 * (a.velocity + after);
-    }
-  }
-  return brought > 0.0 && made > seems_made * brought ? made : 0.0;
-}
-
-// Newton's law of restitution holds for one impact. If several simultaneous impacts share nodes,
-// each must end with its own share of its own speed, and the impulses that satisfy all of them can
-// create energy (Stewart 2000). In a heap of nodes that collide in every step the energy grows
-// without bound. In that case the velocities are v0 + s (v1 - v0), v1 with the bounces, v0 without;
-// s removes the created energy [J]. Both v0 and v1 conserve momentum and satisfy the contacts, so
-// the velocities between them do too.
-void bounce_less(const Model& model, const std::vector<Vec3>& force, double mean_step, double h,
-                 double made, ContactScratch& s) {
-  const std::vector<Impact> with = s.impacts;
-  std::vector<Vec3> change = s.velocity;  // v1 - v0 (slots)
-  const double work = work_within(model, force, mean_step, s);
-  s.velocity = s.predicted;
-  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
-    Impact& i = s.impacts[k];
-    if (s.arrivals[k].bounces) i.least = least_without_bounce(s.arrivals[k], h);
-    s.arrivals[k].bounces = false;
-    i.impulse = 0.0;
-    i.friction_impulse.setZero();
-  }
-  exchange_all(s);
-  // a s^2 + b s + c = 0: the work at s equals the work with all bounces, minus the created energy.
-  const double c = work_within(model, force, mean_step, s) - (work - made);
-  double a = 0.0;
-  for (std::size_t k = 1; k < s.node.size(); ++k) {
-    const auto i = uz(s.node[k]);
-    change[k] -= s.velocity[k];
-    if (model.inverse_mass[i] > 0.0) a += 0.5 * model.mass[i] * change[k].squaredNorm();
-  }
-  if (c >= 0.0 || a == 0.0) return;
-  const double b = made - c - a;
-  const double share =
-      std::clamp((-b + std::sqrt(std::max(0.0, b * b - 4.0 * a * c))) / (2.0 * a), 0.0, 1.0);
-  for (std::size_t k = 1; k < s.node.size(); ++k) s.velocity[k] += share * change[k];
-  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
-    s.impacts[k].impulse += share * (with[k].impulse - s.impacts[k].impulse);
-    s.impacts[k].friction_impulse +=
-        share * (with[k].friction_impulse - s.impacts[k].friction_impulse);
-  }
 }
 
 // Updates velocities and positions of the nodes. The work of an impulse uses the mean of the
@@ -325,19 +233,16 @@ ContactReport solve_contacts(const Model& model, const std::vector<Contact>& con
                              ContactScratch& s) {
   ContactReport report;
   std::vector<ContactForce>& contact_forces = state.reactions.contacts;
-  find_impacts(model, contacts, force, h, state, s);
+  const double mean_step = 0.5 * (state.last_step + h);
+  find_impacts(model, contacts, force, mean_step, h, state, s);
   if (s.impacts.empty()) {
     contact_forces.clear();
     return report;
   }
-  const double mean_step = 0.5 * (state.last_step + h);
   recall(contact_forces, mean_step, s);
   report.sweeps = exchange_all(s);
-  const double made = energy_of_bounces(s, mean_step);
-  if (made > 0.0) bounce_less(model, force, mean_step, h, made, s);
   const double gained = move_nodes(model, force, mean_step, h, s, state);
 
-  bool bounced = false;
   contact_forces.clear();
   for (std::size_t k = 0; k < s.impacts.size(); ++k) {
     const Impact& i = s.impacts[k];
@@ -345,30 +250,15 @@ ContactReport solve_contacts(const Model& model, const std::vector<Contact>& con
     const Contact& c = *a.contact;
     if (i.impulse == 0.0) continue;
     ++report.contacts;
-    // A contact that bounces left the surface at its time of impact, not at the start of the step.
-    if (a.bounces) {
-      bounced = true;
-      const double shift = a.after.gap - (c.gap + h * (a.after.velocity - a.velocity));
-      for (std::size_t n = 0; n < static_cast<std::size_t>(c.count); ++n)
-        state.position[uz(c.node[n])] += (i.share[n] * i.mass * shift) * c.normal;
-      report.dissipated += impact_time_correction(i, a, mean_step);
-    }
     const Vec3 total = i.impulse * i.normal + i.friction_impulse;
     report.work_in += total.dot(i.speed);
-    report.friction -= i.friction_impulse.dot(relative(i, s.mean) - i.speed);
+    // Of the sliding that is left: 0 if it sticks, never negative by Coulomb's law.
+    report.friction += std::max(0.0, -i.friction_impulse.dot(relative(i, s.velocity) - i.speed));
     const Index obstacle = c.id.obstacle();
     if (obstacle >= 0) state.obstacle_force[uz(obstacle)] -= total / mean_step;
     const double along = i.normal.dot(relative(i, s.velocity) - i.speed);
     report.deepest = std::max(report.deepest, -(c.gap + h * (along - a.velocity)));
     contact_forces.push_back({c.id, c.node, c.weight, total / mean_step});
-  }
-  if (bounced) {
-    report.deepest = 0.0;
-    for (std::size_t k = 0; k < s.impacts.size(); ++k) {
-      if (s.impacts[k].impulse == 0.0) continue;
-      report.deepest =
-          std::max(report.deepest, -contact_gap(*s.arrivals[k].contact, state.position));
-    }
   }
   report.dissipated += report.work_in - gained;
   for (std::size_t k = 1; k < s.node.size(); ++k) s.slot[uz(s.node[k])] = 0;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "sinew/contact/contact.h"
-#include "sinew/contact/restitution.h"
 #include "sinew/model/state.h"
 
 namespace sinew {
@@ -41,10 +40,7 @@ struct ContactScratch {
   // The part of a contact that the sweeps do not need.
   struct Arrival {
     const Contact* contact = nullptr;
-    double velocity = 0.0;      // along, predicted [m/s]
-    double acceleration = 0.0;  // along [m/s2]; if it may bounce
-    bool bounces = false;       // with the rebound `after`
-    Rebound after;
+    double velocity = 0.0;     // along, predicted [m/s]
     std::size_t recalled = 0;  // index of its force in the step before, or where it would be
     bool known = false;        // that force exists
   };
@@ -63,10 +59,11 @@ struct ContactScratch {
 // the step [N] (nodes), `contacts` are the contacts at the predicted positions, sorted by
 // comes_before().
 //
-// Each contact gets the impulse that ends the step with a gap of at least 0, or with its rebound
-// (contact/restitution.h), and a friction impulse of at most mu times that, against the sliding.
-// Positions follow velocities, as for constraints in Verlet's method (SHAKE: Ryckaert, Ciccotti and
-// Berendsen 1977), so the energy of a contact is the work of its impulse.
+// Each contact gets the impulse that ends the step with a gap of at least 0 and, if it closes, with
+// at least the velocity of its bounce (contact/restitution.h), and a friction impulse of at most mu
+// times that, against the sliding. Positions follow velocities, as for constraints in Verlet's
+// method (SHAKE: Ryckaert, Ciccotti and Berendsen 1977), so the energy of a contact is the work of
+// its impulse.
 //
 // Sweeps of projected Gauss-Seidel visit the contacts in order until the largest change is small. A
 // contact with a gap above 0 takes part because other contacts may close it. The sweeps start from

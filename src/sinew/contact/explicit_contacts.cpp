@@ -8,6 +8,8 @@ namespace {
 
 // The largest motion of a resting contact in a step, as a multiple of the reach of contacts.
 constexpr double rests_within = 10.0;
+// A contact that slides by more than this multiple of the reach may pass to other features.
+constexpr double slides_beyond = 30.0;
 
 // Whether every contact of the step before is found again: for each feature and owner at least as
 // many contacts, possibly with other partners. Both lists are sorted by id.
@@ -109,11 +111,55 @@ void ExplicitContacts::find(const Controls& controls, const std::vector<Vec3>& b
   }
 }
 
+bool ExplicitContacts::slides_far(const std::vector<Vec3>& before, const State& state) const {
+  const double most = slides_beyond * finder_.explicit_reach();
+  return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
+    if (c.id.with_shape()) return false;
+    Vec3 motion = Vec3::Zero();
+    for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) {
+      const auto i = uz(c.node[a]);
+      motion += c.weight[a] * (state.position[i] - before[i]);
+    }
+    motion -= c.normal.dot(motion) * c.normal;
+    return motion.squaredNorm() > most * most;
+  });
+}
+
+// Adds the contacts between surfaces that penetrate at the solved positions and were not found
+// before. Returns whether there are any.
+bool ExplicitContacts::add_missed(const std::vector<Vec3>& before, const State& solved,
+                                  const State& predicted) {
+  finder_.find_surfaces(before, solved.position, finder_.explicit_reach(), surfaces_);
+  const auto known = std::ssize(contacts_);
+  for (Contact& c : surfaces_) {
+    if (!(c.gap < 0.0) ||
+        std::binary_search(contacts_.begin(), contacts_.begin() + known, c, comes_before))
+      continue;
+    c.gap = contact_gap(c, predicted.position);
+    contacts_.push_back(c);
+  }
+  std::sort(contacts_.begin(), contacts_.end(), comes_before);
+  return std::ssize(contacts_) > known;
+}
+
 ContactReport ExplicitContacts::step(const Controls& controls, const std::vector<Vec3>& before,
                                      const std::vector<Vec3>& force, double h, State& state) {
   find(controls, before, force, h, state);
-  state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
-  const ContactReport report = solve_contacts(model_, contacts_, force, h, state, scratch_);
+  const auto solve = [&] {
+    state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
+    return solve_contacts(model_, contacts_, force, h, state, scratch_);
+  };
+  ContactReport report;
+  if (slides_far(before, state)) {
+    const State predicted = state;
+    report = solve();
+    if (add_missed(before, state, predicted)) {
+      state = predicted;
+      report = solve();
+    }
+  } else {
+    report = solve();
+  }
   state.energy.dissipated += report.dissipated;
   state.energy.work_in += report.work_in;
   return report;

@@ -29,7 +29,8 @@ class ExplicitContacts {
   // The forces of the step before, state.reactions.contacts, move resting nodes back to their
   // support; contacts are found at those positions, so CCD need not follow a resting node. The gaps
   // are measured at the predicted positions. If a contact of the step before is missing, the
-  // contacts of its kind are found again at the predicted positions.
+  // contacts of its kind are found again at the predicted positions. If a contact slides far in the
+  // step, those at the solved positions that were not found are added, and all are solved again.
   //
   // Adds work and losses to state.energy. Writes the contact forces to state.reactions, from
   // which the next step starts, and the forces of bodies on hard obstacles to state.obstacle_force.
@@ -46,6 +47,8 @@ class ExplicitContacts {
   bool hold(const std::vector<Vec3>& before, const std::vector<Vec3>& force, double h,
             State& state);
   void let_go(State& state);
+  bool slides_far(const std::vector<Vec3>& before, const State& state) const;
+  bool add_missed(const std::vector<Vec3>& before, const State& solved, const State& predicted);
 
   const Model& model_;
   ContactFinder finder_;

@@ -1,6 +1,7 @@
 #include "sinew/forces/terms.h"
 
 #include "sinew/base/parallel.h"
+#include "sinew/forces/heat.h"
 #include "sinew/forces/network.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/volume.h"
@@ -24,6 +25,24 @@ double elastic_energy(const Configuration& at, std::span<const double> tet_volum
   return spring_energy(at.model, at.x) + network_energy(at.model, at.x) +
          energy_of(Account::elastic, at) + volume_energy(at.model, tet_volume) +
          edge_volume_energy(at.model, at.x);
+}
+
+// Half of the work of loads, pins, soft obstacles and tools in the explicit step that is in
+// progress at the time of the positions [J]; 0 after other steps.
+double work_in_progress(const Configuration& at, const State& state,
+                        const std::vector<Vec3>& force) {
+  if (state.last_step == 0.0) return 0.0;
+  double work = 0.0;
+  for_each_load_force(at.model, at.x, at.time, [&](Index node, const Vec3& load) {
+    work += load.dot(state.half_velocity[uz(node)]);
+  });
+  for (const Pin& pin : at.model.pins) {
+    for (const Index node : pin.nodes) work -= force[uz(node)].dot(state.half_velocity[uz(node)]);
+  }
+  work *= state.last_step;
+  for_each_work_on_spheres(at, at.time - state.last_step, at.time,
+                           [&](double of_one) { work -= of_one; });
+  return 0.5 * work;
 }
 
 }  // namespace
@@ -68,17 +87,20 @@ double potential_energy(const Configuration& at, std::span<const double> tet_vol
 Energies measure_energies(const Model& model, const Controls& controls, const State& state,
                           const std::vector<Vec3>& force) {
   const std::vector<Vec3> v = synchronous_velocity(model, state, force);
+  const std::vector<Vec3>& w = state.half_velocity;
   Energies e;
   e.kinetic = parallel_sum(model.node_count(), [&](Index i) {
     const auto k = uz(i);
-    return model.inverse_mass[k] > 0.0 ? 0.5 * model.mass[k] * v[k].squaredNorm() : 0.0;
+    // w- . w+ with w+ = w- + 2 (v - w-)
+    return model.inverse_mass[k] > 0.0 ? 0.5 * model.mass[k] * w[k].dot(2.0 * v[k] - w[k]) : 0.0;
   });
   const Configuration at = configuration(model, controls, state);
   e.gravity = GravityTerm::energy(at) + energy_of(Account::gravity, at);
   e.elastic = elastic_energy(at);
   e.contact = energy_of(Account::contact, at);
-  e.dissipated = state.energy.dissipated;
-  e.work_in = state.energy.work_in;
+  const double half = 0.5 * state.last_step;
+  e.dissipated = state.energy.dissipated + half * damping_power(model, state.position, w, w);
+  e.work_in = state.energy.work_in + work_in_progress(at, state, force);
   return e;
 }
 

@@ -97,9 +97,12 @@ double compute_viscous_forces(const Model& model, std::span<const Vec3> x, std::
   });
 }
 
-double viscous_power(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v) {
-  return parallel_sum(model.viscous_cells.count(),
-                      [&](Index cell) { return stress_of_cell(model, x, v, cell).heat; });
+double viscous_power(const Model& model, std::span<const Vec3> x, std::span<const Vec3> a,
+                     std::span<const Vec3> b) {
+  return parallel_sum(model.viscous_cells.count(), [&](Index cell) {
+    const Mat3 stress = stress_of_cell(model, x, a, cell).stress;
+    return stress.cwiseProduct(cell_gradient(model.viscous_cells, b, cell)).sum();
+  });
 }
 
 // dE/dt| <= |F| sum_a |g_a| |v_a|, so the blocks of C are at most 2 eta V |F|^2 |g_a| |g_b|.

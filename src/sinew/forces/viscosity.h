@@ -59,8 +59,9 @@ void add_viscosity(Model& model, const TetMesh& mesh, const std::vector<Material
 double compute_viscous_forces(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v,
                               std::vector<Vec3>& force);
 
-// Only that power, v . C v [W].
-double viscous_power(const Model& model, std::span<const Vec3> x, std::span<const Vec3> v);
+// a . C b [W], C the matrix of the viscous forces at x; a = b = v: that power.
+double viscous_power(const Model& model, std::span<const Vec3> x, std::span<const Vec3> a,
+                     std::span<const Vec3> b);
 
 // An upper bound of the row sum of |C_ij| for every node [N s/m] (nodes).
 std::vector<double> viscous_row_sums(const Model& model, std::span<const Vec3> x);

@@ -7,6 +7,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
+#include "sinew/forces/heat.h"
 #include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/loads.h"
 #include "sinew/forces/obstacles.h"
@@ -173,7 +174,7 @@ bool ImplicitStepper::tr_bdf2(double h, const Controls& controls, const Implicit
   if (any_active(state.reactions)) return true;
   const Point middle{state.position, state.time, std::move(*nodal_force)};
   const Field v1 = state.half_velocity;
-  heat += 0.25 * std::sqrt(2.0) * h * damping_power(model_, start.x, v1);
+  heat += 0.25 * std::sqrt(2.0) * h * damping_power(model_, start.x, v1, v1);
 
   // The second stage starts from extrapolated positions, which may be beyond a thin body or
   // obstacle. Contacts are searched from the end of the first stage. One that acts leads to
@@ -184,7 +185,7 @@ bool ImplicitStepper::tr_bdf2(double h, const Controls& controls, const Implicit
                       (1.0 - g) * h, controls, options, state, report);
   if (!nodal_force) return false;
   const Point end{state.position, state.time, std::move(*nodal_force)};
-  heat += d * damping_power(model_, middle.x, state.half_velocity);
+  heat += d * damping_power(model_, middle.x, state.half_velocity, state.half_velocity);
   state.energy.dissipated += heat;
   state.energy.work_in +=
       work_between(model_, controls, start, middle) + work_between(model_, controls, middle, end);
@@ -203,7 +204,7 @@ bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitO
   if (any_active(state.reactions)) return true;
   const Field v1 = state.half_velocity;
   const Point middle{state.position, state.time, std::move(*nodal_force)};
-  state.energy.dissipated += (1.0 - g) * h * damping_power(model_, x, v1);
+  state.energy.dissipated += (1.0 - g) * h * damping_power(model_, x, v1, v1);
   state.energy.work_in +=
       work_of_the_outside({model_, controls, middle.x, middle.time}, middle.nodal_force,
                           blend(1.0, middle.x, -1.0, x), time, middle.time);
@@ -213,7 +214,8 @@ bool ImplicitStepper::sdirk2(double h, const Controls& controls, const ImplicitO
             g * h, middle.x, (1.0 - g) * h, controls, options, state, report);
   if (!nodal_force) return false;
   const Point end{state.position, state.time, std::move(*nodal_force)};
-  state.energy.dissipated += g * h * damping_power(model_, middle.x, state.half_velocity);
+  state.energy.dissipated +=
+      g * h * damping_power(model_, middle.x, state.half_velocity, state.half_velocity);
   state.energy.work_in += work_between(model_, controls, middle, end);
   return true;
 }
@@ -226,7 +228,7 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
   state.time += h;
   const auto nodal_force = solve(x, v, h, x, h, controls, options, state, report);
   if (!nodal_force) return false;
-  state.energy.dissipated += h * damping_power(model_, x, state.half_velocity);
+  state.energy.dissipated += h * damping_power(model_, x, state.half_velocity, state.half_velocity);
   state.energy.work_in +=
       work_of_the_outside({model_, controls, state.position, state.time}, *nodal_force,
                           blend(1.0, state.position, -1.0, x), state.time - h, state.time);

@@ -5,9 +5,8 @@
 #include <limits>
 
 #include "sinew/base/parallel.h"
-#include "sinew/forces/spring_law.h"
+#include "sinew/forces/heat.h"
 #include "sinew/forces/terms.h"
-#include "sinew/forces/viscosity.h"
 #include "sinew/solver/linear_solver.h"
 
 namespace sinew {
@@ -16,23 +15,6 @@ void keep_free(const Model& model, Field& f) {
   parallel_for(model.node_count(), [&](Index i) {
     if (model.inverse_mass[uz(i)] == 0.0) f[uz(i)] = Vec3::Zero();
   });
-}
-
-double damping_power(const Model& model, const Field& x, const Field& v) {
-  double sum = parallel_sum(model.node_count(), [&](Index i) {
-    const auto k = uz(i);
-    return model.inverse_mass[k] == 0.0 ? 0.0 : model.drag[k] * model.mass[k] * v[k].squaredNorm();
-  });
-  for (const Range& active : model.active_springs) {
-    sum += parallel_sum(active.size(), [&](Index i) {
-      const auto s = uz(active.begin + i);
-      const auto a = uz(model.springs[s][0]);
-      const auto b = uz(model.springs[s][1]);
-      const Vec3 v_ij = v[b] - v[a];
-      return v_ij.dot(dashpot_times(x[b] - x[a], model.damping[s], v_ij));
-    });
-  }
-  return sum + viscous_power(model, x, v);
 }
 
 namespace {
@@ -189,8 +171,8 @@ double objective_value(const Objective& objective, const State& state, ForceEval
          });
   }
   if (objective.rate > 0.0) {
-    e += 0.5 * objective.rate *
-         damping_power(model, *objective.lagged, displacement(objective, state));
+    const Field u = displacement(objective, state);
+    e += 0.5 * objective.rate * damping_power(model, *objective.lagged, u, u);
   }
   if (objective.constraints != nullptr) {
     e += objective.constraints->value(state.position, tet_volume);

@@ -47,9 +47,6 @@ struct ObjectiveForce {
 ObjectiveForce objective_force(const Objective& objective, const State& state,
                                ForceEvaluator& forces);
 
-// v . C v of dashpots and viscosity at positions x, and of drag [W]; v of all nodes.
-double damping_power(const Model& model, const Field& x, const Field& v);
-
 struct NewtonProgress {
   int newton = 0;         // steps so far
   double residual = 0.0;  // |force| / scale [-]

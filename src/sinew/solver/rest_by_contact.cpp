@@ -19,7 +19,7 @@ constexpr double longest_step = 100.0;  // [s]
 constexpr int most_steps = 1000;
 // Hessian products times nodes after which a search is given up: about 12 s, and for a part of the
 // load 2 s.
-constexpr double most_work = 1.2e8;
+constexpr double most_work_of_all = 1.2e8;
 constexpr double most_work_of_part = 2e7;
 constexpr double reach_in_sizes = 20.0;  // a body that moves this many times its size is not held
 
@@ -67,8 +67,8 @@ NewtonReport StaticSolver::rest_by_contact(const Controls& controls, double shar
   NewtonReport report;
   report.residual = 1.0;
   std::unique_ptr<Constraints> constraints;
-  const double most_products =
-      (share < 1.0 ? most_work_of_part : most_work) / static_cast<double>(model_.node_count());
+  const double most_products = (share < 1.0 ? most_work_of_part : most_work_of_all) /
+                               static_cast<double>(model_.node_count());
   for (int step = 0; step < most_steps && h > shortest_step && report.products < most_products;
        ++step) {
     const State before = state;

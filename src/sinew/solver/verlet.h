@@ -43,10 +43,14 @@ class VerletStepper {
   ForceEvaluator& forces() { return forces_; }
 
  private:
+  double heat_of_impacts(const State& state);
+
   const Model& model_;
   ForceEvaluator forces_;
   std::optional<ExplicitContacts> contacts_;  // only if something in the model can touch
   std::vector<Vec3> before_;                  // positions before the move [m] (nodes)
+  std::vector<Vec3> velocity_before_;         // half-step velocities before it [m/s] (nodes)
+  std::vector<Vec3> mean_velocity_;           // scratch [m/s] (nodes)
   VolumeLimit volume_limit_;
   double guard_frequency2_ = 0.0;
 };
