@@ -68,8 +68,9 @@ TEST(Ground, RestitutionHalvesTheSpeedAndQuartersTheHeight) {
   Ball ball(Vec3(0, 1, 0), Vec3::Zero(), 0.5, 0.0);
   const double h = 1e-4;
   while (ball.contacts == 0) ball.step(h);
-  EXPECT_NEAR(ball.top(h, 3000), 0.25, 1e-5);
-  EXPECT_NEAR(ball.dissipated, 2.0 * 10.0 * 0.75, 1e-3);
+  // The half-step velocity of an impact is right to g h / 2.
+  EXPECT_NEAR(ball.top(h, 3000), 0.25, 2e-4);
+  EXPECT_NEAR(ball.dissipated, 2.0 * 10.0 * 0.75, 4e-3);
 }
 
 TEST(Ground, ComesToRestOnThePlaneAndStaysThere) {

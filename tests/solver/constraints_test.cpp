@@ -346,11 +346,19 @@ TEST(Constraints, ABoxRestsOnTheGroundWhereItIsPutDown) {
   EXPECT_LE(std::hypot(shift.x(), shift.z()), 1e-5);
 }
 
-TEST(Constraints, ARestStateOnASlopeIsRefused) {
-  Model m = box_above_ground(soft(), 0.0, 0.5);
-  m.start_gravity = Vec3(1, -9, 0);
-  State s = initial_state(m);
-  EXPECT_THROW(StaticSolver(m).solve(initial_controls(m), 1.0, {}, s), Error);
+TEST(Constraints, FrictionHoldsABodyOnASlopeUpToItsAngle) {
+  for (const double friction : {0.05, 0.5}) {  // the slope is 0.11
+    Model m = box_above_ground(soft(), 0.0, friction);
+    m.start_gravity = Vec3(1, -9, 0);
+    State s = initial_state(m);
+    if (friction < 0.11) {
+      EXPECT_THROW(StaticSolver(m).solve(initial_controls(m), 1.0, {}, s), Error);
+    } else {
+      EXPECT_LE(StaticSolver(m).solve(initial_controls(m), 1.0, {}, s).residual, 1e-6);
+      for (std::size_t i = 0; i < s.position.size(); ++i)
+        EXPECT_LE((s.position[i] - m.rest_position[i]).norm(), 0.01);
+    }
+  }
 }
 
 TEST(Constraints, TangledBodiesAreLedBack) {

@@ -31,7 +31,8 @@ ContactFinder::ContactFinder(const Model& model) : model_(model) {
   const double mean_volume =
       std::accumulate(model.rest_volume.begin(), model.rest_volume.end(), 0.0) /
       std::max(1.0, static_cast<double>(model.tet_count()));
-  if (may_share_nodes(model)) explicit_reach_ = reach_share * std::cbrt(mean_volume);
+  reach_ = reach_share * std::cbrt(mean_volume);
+  if (may_share_nodes(model)) explicit_reach_ = reach_;
   has_rigid_surfaces_ = model.surface.owner_count() > model.surface.body_count;
   if (!model.surface.triangles.empty()) surfaces_ = std::make_unique<SurfaceContacts>(model);
 }

@@ -25,6 +25,8 @@ class ContactFinder {
   // gap takes part because the impulses of other contacts may close it. 0 if no two contacts can
   // share a node.
   double explicit_reach() const { return explicit_reach_; }
+  // A small share of the mean tet [m].
+  double reach() const { return reach_; }
 
   // The find functions return the contacts of a step from positions `from` at time t0 to `to` at
   // time t1 (nodes), with obstacles at the poses that the controls give them: pairs whose gap at
@@ -44,6 +46,7 @@ class ContactFinder {
 
  private:
   const Model& model_;
+  double reach_ = 0.0;
   double explicit_reach_ = 0.0;
   bool has_rigid_surfaces_ = false;
   std::vector<Contact> part_;  // scratch

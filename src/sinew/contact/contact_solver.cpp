@@ -74,9 +74,12 @@ void aim(const Model& model, const std::vector<Vec3>& force, double mean_step, d
   if (c.id.obstacle() >= 0) impact.speed = c.anchor_displacement / h;
   arrival.velocity = c.normal.dot(velocity - impact.speed);
   impact.least = least_without_bounce(arrival, h);
+  arrival.bounces = false;
   if (c.restitution == 0.0 || !(c.gap < 0.0)) return;
-  const double before = arrival.velocity - mean_step * acceleration(model, c, force);
-  impact.least = std::max(impact.least, velocity_after_impact(before, c.restitution));
+  const double pull = mean_step * acceleration(model, c, force);
+  const double after = velocity_after_impact(arrival.velocity - pull, pull, c.restitution);
+  arrival.bounces = after > std::max(0.0, impact.least);
+  if (arrival.bounces) impact.least = after;
 }
 
 // Fills impacts, arrivals and the slots of their nodes.
@@ -205,6 +208,62 @@ Vec3 velocity_before(const Model& model, const std::vector<Vec3>& force, double 
   return s.predicted[slot] - (mean_step * model.inverse_mass[i]) * force[i];
 }
 
+// The work of the impulses, with the mean of the velocities of the half-steps before and after,
+// minus the work of moving colliders: the energy that the contacts make. [J]
+double energy_made(const Model& model, const std::vector<Vec3>& force, double mean_step,
+                   const ContactScratch& s) {
+  double work = 0.0;
+  for (std::size_t k = 1; k < s.node.size(); ++k) {
+    const auto i = uz(s.node[k]);
+    if (model.inverse_mass[i] == 0.0) continue;
+    const Vec3 twice = velocity_before(model, force, mean_step, s, k) + s.velocity[k];
+    work += 0.5 * model.mass[i] * (s.velocity[k] - s.predicted[k]).dot(twice);
+  }
+  for (const Impact& i : s.impacts)
+    work -= (i.impulse * i.normal + i.friction_impulse).dot(i.speed);
+  return work;
+}
+
+// Newton's law makes no energy of one impact. Of several that share nodes it can, if a contact that
+// opened is closed again by the bounce of another (Stewart 2000). Then the velocities are
+// v0 + s (v1 - v0), v1 with the bounces and v0 without, with the largest s that makes none. Both
+// conserve momentum and satisfy the contacts, so the velocities between them do too.
+void bounce_less(const Model& model, const std::vector<Vec3>& force, double mean_step, double h,
+                 ContactScratch& s) {
+  const auto bounces = [](const Arrival& a) { return a.bounces; };
+  if (std::none_of(s.arrivals.begin(), s.arrivals.end(), bounces)) return;
+  const double made = energy_made(model, force, mean_step, s);
+  if (!(made > 0.0)) return;
+  const std::vector<Impact> with = s.impacts;
+  std::vector<Vec3> change = s.velocity;  // v1 - v0 (slots)
+  s.velocity = s.predicted;
+  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
+    Impact& i = s.impacts[k];
+    if (s.arrivals[k].bounces) i.least = least_without_bounce(s.arrivals[k], h);
+    i.impulse = 0.0;
+    i.friction_impulse.setZero();
+  }
+  exchange_all(s);
+  // a s^2 + b s + c = 0, c < 0 < a + b + c: the energy made at s, less what v0 may make by itself.
+  const double without = energy_made(model, force, mean_step, s);
+  const double c = without - std::max(0.0, without);
+  double a = 0.0;
+  for (std::size_t k = 1; k < s.node.size(); ++k) {
+    const auto i = uz(s.node[k]);
+    change[k] -= s.velocity[k];
+    if (model.inverse_mass[i] > 0.0) a += 0.5 * model.mass[i] * change[k].squaredNorm();
+  }
+  const double b = made - without - a;
+  const double root = std::sqrt(std::max(0.0, b * b - 4.0 * a * c));
+  const double share = a > 0.0 ? std::clamp((root - b) / (2.0 * a), 0.0, 1.0) : 0.0;
+  for (std::size_t k = 1; k < s.node.size(); ++k) s.velocity[k] += share * change[k];
+  for (std::size_t k = 0; k < s.impacts.size(); ++k) {
+    s.impacts[k].impulse += share * (with[k].impulse - s.impacts[k].impulse);
+    s.impacts[k].friction_impulse +=
+        share * (with[k].friction_impulse - s.impacts[k].friction_impulse);
+  }
+}
+
 // Updates velocities and positions of the nodes. The work of an impulse uses the mean of the
 // velocities of the half-steps before and after, as in Verlet's energy balance: it is 0 for a body
 // at rest and for sticking friction. Returns the energy that the bodies gain [J].
@@ -241,6 +300,7 @@ ContactReport solve_contacts(const Model& model, const std::vector<Contact>& con
   }
   recall(contact_forces, mean_step, s);
   report.sweeps = exchange_all(s);
+  bounce_less(model, force, mean_step, h, s);
   const double gained = move_nodes(model, force, mean_step, h, s, state);
 
   contact_forces.clear();

@@ -41,6 +41,7 @@ struct ContactScratch {
   struct Arrival {
     const Contact* contact = nullptr;
     double velocity = 0.0;     // along, predicted [m/s]
+    bool bounces = false;      // Impact::least is that of a bounce
     std::size_t recalled = 0;  // index of its force in the step before, or where it would be
     bool known = false;        // that force exists
   };

@@ -112,9 +112,8 @@ void ExplicitContacts::find(const Controls& controls, const std::vector<Vec3>& b
 }
 
 bool ExplicitContacts::slides_far(const std::vector<Vec3>& before, const State& state) const {
-  const double most = slides_beyond * finder_.explicit_reach();
+  const double most = slides_beyond * finder_.reach();
   return std::any_of(contacts_.begin(), contacts_.end(), [&](const Contact& c) {
-    if (c.id.with_shape()) return false;
     Vec3 motion = Vec3::Zero();
     for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) {
       const auto i = uz(c.node[a]);
@@ -125,19 +124,26 @@ bool ExplicitContacts::slides_far(const std::vector<Vec3>& before, const State& 
   });
 }
 
-// Adds the contacts between surfaces that penetrate at the solved positions and were not found
-// before. Returns whether there are any.
-bool ExplicitContacts::add_missed(const std::vector<Vec3>& before, const State& solved,
-                                  const State& predicted) {
-  finder_.find_surfaces(before, solved.position, finder_.explicit_reach(), surfaces_);
+// Adds the contacts that penetrate at the solved positions and were not found before. Returns
+// whether there are any.
+bool ExplicitContacts::add_missed(const Controls& controls, const std::vector<Vec3>& before,
+                                  double h, const State& solved, const State& predicted) {
+  const double reach = finder_.explicit_reach();
   const auto known = std::ssize(contacts_);
-  for (Contact& c : surfaces_) {
-    if (!(c.gap < 0.0) ||
-        std::binary_search(contacts_.begin(), contacts_.begin() + known, c, comes_before))
-      continue;
-    c.gap = contact_gap(c, predicted.position);
-    contacts_.push_back(c);
-  }
+  const auto add = [&](const std::vector<Contact>& found) {
+    for (Contact c : found) {
+      if (!(c.gap < 0.0) ||
+          std::binary_search(contacts_.begin(), contacts_.begin() + known, c, comes_before))
+        continue;
+      c.gap = contact_gap(c, predicted.position);
+      contacts_.push_back(c);
+    }
+  };
+  finder_.find_shapes(controls, before, solved.position, solved.time, solved.time + h, reach,
+                      surfaces_);
+  add(surfaces_);
+  finder_.find_surfaces(before, solved.position, reach, surfaces_);
+  add(surfaces_);
   std::sort(contacts_.begin(), contacts_.end(), comes_before);
   return std::ssize(contacts_) > known;
 }
@@ -153,7 +159,7 @@ ContactReport ExplicitContacts::step(const Controls& controls, const std::vector
   if (slides_far(before, state)) {
     const State predicted = state;
     report = solve();
-    if (add_missed(before, state, predicted)) {
+    if (add_missed(controls, before, h, state, predicted)) {
       state = predicted;
       report = solve();
     }

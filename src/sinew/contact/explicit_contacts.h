@@ -48,7 +48,8 @@ class ExplicitContacts {
             State& state);
   void let_go(State& state);
   bool slides_far(const std::vector<Vec3>& before, const State& state) const;
-  bool add_missed(const std::vector<Vec3>& before, const State& solved, const State& predicted);
+  bool add_missed(const Controls& controls, const std::vector<Vec3>& before, double h,
+                  const State& solved, const State& predicted);
 
   const Model& model_;
   ContactFinder finder_;
