@@ -41,19 +41,6 @@ bool Model::bounces() const {
                      [](const Obstacle& o) { return o.hard() && o.restitution > 0.0; });
 }
 
-bool Model::undamped() const {
-  const auto damped = [&](const Body& body) {
-    const auto positive = [](double c) { return c > 0.0; };
-    return std::any_of(damping.begin() + body.springs.begin, damping.begin() + body.springs.end,
-                       positive) ||
-           std::any_of(drag.begin() + body.nodes.begin, drag.begin() + body.nodes.end, positive) ||
-           (!tet_viscosity.empty() &&
-            std::any_of(tet_viscosity.begin() + body.tets.begin,
-                        tet_viscosity.begin() + body.tets.end, positive));
-  };
-  return !std::all_of(bodies.begin(), bodies.end(), damped);
-}
-
 std::uint64_t Model::hash() const {
   Hash h;
   h.array(rest_position);

@@ -182,8 +182,6 @@ struct Model {
 
   // Whether any restitution is above 0.
   bool bounces() const;
-  // Whether some body has neither dashpots nor viscosity nor drag.
-  bool undamped() const;
 
   // Hashes everything that determines a run's result; equal models have equal hashes.
   std::uint64_t hash() const;

@@ -132,10 +132,12 @@ class Runner {
 
   void warn_before() {
     if (auto slow = cost_warning(world_)) slow_ = std::move(*slow);
+    divided_ = world_.stepping().division(run_);
     if (!options_.on_warning) return;
     if (!resumed_)
       for (const std::string& w : world_.warnings()) options_.on_warning(w);
     if (!slow_.empty()) options_.on_warning(slow_);
+    if (!divided_.empty()) options_.on_warning(divided_);
   }
 
   // Goes on with another duration or other frames than the checkpoint was made with.
@@ -185,7 +187,9 @@ class Runner {
     s.status = status;
     s.warnings = warnings();
     if (!slow_.empty()) s.warnings.push_back(slow_);
-    if (scene.dt && run_.step_reductions > 0) {
+    if (!divided_.empty()) {
+      s.warnings.push_back(divided_);
+    } else if (scene.dt && run_.step_reductions > 0) {
       s.warnings.push_back(
           fmt::format("the given step {:.4g} s was above the stable one ({:.4g} s at the least) as "
                       "the body deformed, and was divided {} times; take dt = \"auto\"",
@@ -202,11 +206,15 @@ class Runner {
     if (world_.model().bounces() && scene.stepper == StepperKind::implicit) {
       s.warnings.push_back("implicit steps know no restitution: every impact is plastic");
     }
+    if (run_.stepper != StepperKind::rest) {  // a rest state has no motion to account for
+      const std::string open = account_warning(s.energy, s.energy_drift);
+      if (!open.empty()) s.warnings.push_back(open);
+    }
     if (run_.recovery_steps > 0) {
       s.warnings.push_back(fmt::format(
           "a body was tangled (over {:.0f} % of its tets inside out) for {} of {} steps "
-          "and was led back to its rest shape",
-          100.0 * tangled_share, run_.recovery_steps, run_.state.step));
+          "and was led back to its rest shape; the work of that, {:.3g} J, counts as work put in",
+          100.0 * tangled_share, run_.recovery_steps, run_.state.step, run_.recovery_work));
     }
     if (!options_.out.empty()) {
       write_force_curves(options_.out, world_.model(), world_.controls());
@@ -222,7 +230,8 @@ class Runner {
   const Clock::time_point start_;
   const double wall_before_;
   const bool resumed_;
-  std::string slow_;  // warning about the time that the run takes
+  std::string slow_;     // warning about the time that the run takes
+  std::string divided_;  // warning that the given step is divided
   std::optional<RunFolder> folder_;
   std::optional<Recorder> recorder_;
 };

@@ -1,5 +1,7 @@
 #include "sinew/run/summary.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -123,6 +125,21 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   s.probes = read_probes(model, x);
   s.obstacles = read_obstacles(model, controls, run.state, finder);
   return s;
+}
+
+std::string account_warning(const Energies& energy, double drift) {
+  constexpr double closes = 0.01;   // share of the largest entry
+  constexpr double nothing = 1e-9;  // [J] below this, rounding
+  double largest = 0.0;
+  for (const double e : {energy.kinetic, energy.elastic, energy.gravity, energy.contact,
+                         energy.dissipated, energy.work_in})
+    largest = std::max(largest, std::abs(e));
+  if (!(std::abs(drift) > std::max(nothing, closes * largest))) return {};
+  return fmt::format(
+      "the energy account does not close: {:.3g} J {}, {:.2g} % of its largest entry; a smaller dt "
+      "or safety makes it smaller",
+      std::abs(drift), drift > 0.0 ? "came from nothing" : "were lost by the steps",
+      100.0 * std::abs(drift) / largest);
 }
 
 nlohmann::ordered_json to_json(const Summary& s) {

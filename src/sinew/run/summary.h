@@ -84,6 +84,10 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
                   const std::vector<std::string>& meshes, RunState& run,
                   const std::vector<Vec3>& force, ContactFinder* finder);
 
+// Why the energy account is not to be trusted: its total has changed by more than a hundredth of
+// its largest entry. Empty: it closes.
+std::string account_warning(const Energies& energy, double drift);
+
 // The object of summary.json. docs/output.md lists its keys.
 nlohmann::ordered_json to_json(const Summary& summary);
 

@@ -9,6 +9,7 @@
 #include "sinew/base/error.h"
 #include "sinew/scene/keys.h"
 #include "sinew/sim/choose_stepper.h"
+#include "sinew/solver/stable_step.h"
 
 namespace sinew {
 namespace {
@@ -89,6 +90,8 @@ bool changes_with_time(const Model& model, const Controls& controls) {
 Stepping::Stepping(const SteppingOptions& options, const Model& model, const Controls& controls,
                    RunState& run)
     : model_(model), options_(options) {
+  share_ = options_.allow_unstable ? 1.0 : accurate_share(model);
+  options_.safety = std::min(options_.safety, share_);
   const bool goes_on = run.target_step > 0.0;  // a resumed run
   const StepperKind kind = goes_on ? run.stepper : options.stepper;
   const bool rest = kind == StepperKind::rest && options.pace == Pace::any;
@@ -122,7 +125,18 @@ void Stepping::begin_run(const Controls& controls, RunState& run) {
   if (!automatic() && run.target_step > choice.first.stable && !options_.allow_unstable) {
     refuse(options_, choice.first);
   }
+  if (!automatic()) run.target_step = std::min(run.target_step, share_ * choice.first.stable);
   if (options_.duration < no_limit) count_parts(options_.duration, run.target_step);
+}
+
+std::string Stepping::division(const RunState& run) const {
+  const double stable = run.smallest_stable_step;
+  if (automatic() || share_ == 1.0 || !(options_.given() > share_ * stable)) return {};
+  return fmt::format(
+      "the given step {:.4g} s is above {:.2g} of the stable one ({:.4g} s), up to which explicit "
+      "steps keep the energy of undamped bodies and of impacts with restitution; it is divided. "
+      "Take dt <= {:.3g}, or dt = \"auto\"",
+      options_.given(), share_, stable, typed_step(share_ * stable * options_.substeps));
 }
 
 double Stepping::frame_end(std::int64_t frame) const {
@@ -173,7 +187,7 @@ bool Stepping::too_long(const RunState& run, double stable, double slack) const 
   if (automatic() || run.target_step < options_.given()) {
     return run.step > slack * options_.safety * stable;
   }
-  return run.step > stable && !options_.allow_unstable;
+  return run.step > share_ * stable && !options_.allow_unstable;
 }
 
 // Adapts the length of the steps to the stable step if it was estimated again.

@@ -49,8 +49,12 @@ class Stepping {
   // The length of the step that step() takes next [s].
   double prepare(const Controls& controls, RunState& run);
 
-  // The longest stable step now [s]; infinity: any.
-  double longest_step(const RunState& run) const { return stepper_->stable_step(run.memory); }
+  // The longest step now that is stable and keeps the energy [s]; infinity: any.
+  double longest_step(const RunState& run) const {
+    return share_ * stepper_->stable_step(run.memory);
+  }
+  // Not empty: a given step is longer than explicit steps that keep the energy, and is divided.
+  std::string division(const RunState& run) const;
 
   // Continues the run at the time of its state, which was set from outside.
   void resume_at(RunState& run) const;
@@ -79,6 +83,7 @@ class Stepping {
   const Model& model_;
   SteppingOptions options_;  // interval: of the frames that are stepped to
   double frame_interval_ = 0.0;
+  double share_ = 1.0;  // of the stable step that a given step may take (accurate_share())
   std::unique_ptr<Stepper> stepper_;
   std::int64_t frames_ = 0;
   std::string limited_by_;

@@ -83,7 +83,8 @@ StepReport ImplicitStepper::recover(std::span<const Index> tangled, double h,
     }
   }
   state.reactions = {};
-  state.energy.work_in += energy_at(state) - energy;
+  report.recovery_work = energy_at(state) - energy;
+  state.energy.work_in += report.recovery_work;
   return report;
 }
 

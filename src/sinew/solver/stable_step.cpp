@@ -277,4 +277,27 @@ std::string describe_spring(const Model& model, Index spring) {
                      model.damping[s]);
 }
 
+namespace {
+
+bool is_damped(const Model& model, const Body& body) {
+  const auto any = [](const std::vector<double>& all, const Range& range) {
+    if (all.empty()) return false;
+    return std::any_of(all.begin() + range.begin, all.begin() + range.end,
+                       [](double c) { return c > 0.0; });
+  };
+  return any(model.drag, body.nodes) || any(model.tet_viscosity, body.tets) ||
+         any(model.damping, body.springs);
+}
+
+}  // namespace
+
+double accurate_share(const Model& model) {
+  constexpr double share = 0.35;
+  const bool undamped =
+      std::any_of(model.bodies.begin(), model.bodies.end(), [&](const Body& body) {
+        return body.tets.size() + body.springs.size() > 0 && !is_damped(model, body);
+      });
+  return undamped || model.bounces() ? share : 1.0;
+}
+
 }  // namespace sinew

@@ -24,6 +24,7 @@ struct StepReport {
   int limit_sweeps = 0;           // sweeps that moved a spring
   bool limits_met = true;         // the ground and the limits hold to their tolerances
   int recovered = 0;              // bodies under inversion recovery (forces/inversion_recovery.h)
+  double recovery_work = 0.0;     // work of inversion recovery [J]
   double stable_step = no_limit;  // the longest next step that the forces of this step allow [s]
 };
 

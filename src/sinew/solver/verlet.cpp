@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "sinew/base/error.h"
@@ -122,6 +123,17 @@ void enforce_volume(const Model& model, const std::vector<Vec3>& force, double h
   if (volume.projections > 0) follow_positions(model, force, predicted, h, state);
 }
 
+// The speed of shear waves in the body's stiffest material at rest, sqrt(mu / rho) [m/s].
+double shear_wave_speed(const Model& model, const Body& body) {
+  double mass = 0.0, volume = 0.0, modulus = 0.0;
+  for (Index i = body.nodes.begin; i < body.nodes.end; ++i) mass += model.mass[uz(i)];
+  for (Index t = body.tets.begin; t < body.tets.end; ++t) {
+    volume += model.rest_volume[uz(t)];
+    modulus = std::max(modulus, model.tet_modulus[uz(t)]);
+  }
+  return std::sqrt(modulus * volume / mass);
+}
+
 // The spring at the node with the largest force, or with a force that is not finite.
 Index suspect_spring(const Model& model, const State& state, Index node) {
   std::vector<Vec3> force;
@@ -156,6 +168,35 @@ Index suspect_spring(const Model& model, const State& state, Index node) {
               "take dt = \"auto\", or a smaller dt or more substeps");
 }
 
+// Throws if a hard obstacle moves through a tangled body faster than its shear waves: the material
+// cannot give way, is torn inside out, and what inversion recovery would do to it is not a blow any
+// more.
+void refuse_torn_bodies(const Model& model, const Controls& controls,
+                        const std::vector<Index>& tangled, const State& state) {
+  for (const ContactForce& c : state.reactions.contacts) {
+    const Index o = c.id.obstacle();
+    if (o < 0 || state.last_step == 0.0) continue;
+    const auto centre = [&](double time) {
+      return controls.obstacle_paths[uz(o)].at(time, model.obstacles[uz(o)].center);
+    };
+    const double speed =
+        (centre(state.time) - centre(state.time - state.last_step)).norm() / state.last_step;
+    for (const Index b : tangled) {
+      const Body& body = model.bodies[uz(b)];
+      if (!body.nodes.contains(c.node[0])) continue;
+      const double waves = shear_wave_speed(model, body);
+      if (speed <= waves) continue;
+      throw Error(
+          ErrorKind::diverged,
+          fmt::format("at t = {:.6g} s (step {}) the obstacle {} has turned tets of body {} inside "
+                      "out: it moves at {:.3g} m/s, and the body's shear waves only at {:.3g} m/s, "
+                      "so the tissue cannot give way",
+                      state.time, state.step, model.obstacles[uz(o)].name, body.name, speed, waves),
+          "a slower obstacle, a stiffer material, or smaller cells than the obstacle is thick");
+    }
+  }
+}
+
 }  // namespace
 
 VerletStepper::VerletStepper(const Model& model, Precision precision)
@@ -181,6 +222,7 @@ StepReport VerletStepper::step(double h, const Controls& controls, State& state)
   const NodalForces& found = forces_.evaluate(controls, state);
   const double heat = found.heat;
   const std::vector<Index> tangled = find_tangled(model_, found.low_tets);
+  if (!tangled.empty()) refuse_torn_bodies(model_, controls, tangled, state);
   report.recovered = static_cast<int>(tangled.size());
   double energy = 0.0;
   std::vector<Vec3> recovering;
@@ -213,7 +255,8 @@ StepReport VerletStepper::step(double h, const Controls& controls, State& state)
   ++state.step;
   if (!tangled.empty()) {
     const NodalForces& after = forces_.evaluate(controls, state);
-    state.energy.work_in += measure_energies(model_, controls, state, after.force).total() - energy;
+    report.recovery_work = measure_energies(model_, controls, state, after.force).total() - energy;
+    state.energy.work_in += report.recovery_work;
   }
   guard_frequency2_ = sinew::guard_frequency2(model_, found.low_tets);  // of the last forces
   if (broken != none) report_divergence(model_, state, broken);
