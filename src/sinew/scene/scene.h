@@ -234,7 +234,7 @@ struct Scene {
   double duration = 2.0;  // [s]
   StepperKind stepper = StepperKind::verlet;
   Scheme scheme = Scheme::tr_bdf2;  // of implicit steps
-  double tolerance = 1e-6;         // static: residual of a rest state, as a share of the forces
+  double tolerance = 1e-6;          // static: residual of a rest state, as a share of the forces
   Precision precision = Precision::single;  // of the forces of tets and springs
   std::optional<double> dt;                 // [s]; absent: "auto"
   std::optional<double> budget_ms;          // [ms] of wall time that the steps of a frame may take

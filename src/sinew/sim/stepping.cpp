@@ -125,7 +125,8 @@ void Stepping::begin_run(const Controls& controls, RunState& run) {
   if (!automatic() && run.target_step > choice.first.stable && !options_.allow_unstable) {
     refuse(options_, choice.first);
   }
-  if (!automatic()) run.target_step = std::min(run.target_step, share_ * choice.first.stable);
+  if (!automatic() && !options_.allow_unstable)
+    run.target_step = std::min(run.target_step, share_ * choice.first.stable);
   if (options_.duration < no_limit) count_parts(options_.duration, run.target_step);
 }
 
