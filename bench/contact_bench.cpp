@@ -108,7 +108,7 @@ void AnswerToLyingBeams(benchmark::State& state) {
     state.PauseTiming();
     copy = s;
     state.ResumeTiming();
-    answer = solve_contacts(model, found, force, h, copy, scratch);
+    answer = solve_contacts(model, found, force, model.start_gravity, h, copy, scratch);
   }
   state.counters["contacts"] = static_cast<double>(found.size());
   state.counters["active"] = static_cast<double>(answer.contacts);

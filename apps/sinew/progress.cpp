@@ -136,8 +136,10 @@ std::string format_table(const Summary& s, std::span<const std::string> told) {
     row("law", fmt::format("{}, {} springs", b.laws, grouped(b.springs)));
   }
   if (s.stepper == StepperKind::rest) {
-    row("rest", fmt::format("residual {:.2g} after {} Newton steps, {} products", s.residual,
-                            grouped(s.newton_steps), grouped(s.products)));
+    row("rest", s.status == RunStatus::diverged
+                    ? "none found"
+                    : fmt::format("residual {:.2g} after {} Newton steps, {} products", s.residual,
+                                  grouped(s.newton_steps), grouped(s.products)));
   } else if (s.stepper == StepperKind::implicit) {
     row("step",
         fmt::format("{} (implicit), {} steps, {} Newton steps, {} products, residual {:.2g}",

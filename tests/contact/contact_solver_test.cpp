@@ -36,7 +36,8 @@ struct Masses {
     }
     for (Contact& c : contacts) c.gap = contact_gap(c, state.position);
     state.obstacle_force.assign(1, Vec3::Zero());
-    const ContactReport report = solve_contacts(model, contacts, force, h, state, scratch);
+    const ContactReport report =
+        solve_contacts(model, contacts, force, Vec3::Zero(), h, state, scratch);
     state.last_step = h;
     return report;
   }

@@ -35,7 +35,7 @@ struct Ball {
     std::vector<Contact> found;
     find_collider_contacts(model, initial_controls(model), before, state.position, 0.0, h, 0.0,
                            found);
-    const ContactReport r = solve_contacts(model, found, force, h, state, scratch);
+    const ContactReport r = solve_contacts(model, found, force, Vec3(0, -g, 0), h, state, scratch);
     contacts += r.contacts;
     dissipated += r.dissipated;
     state.last_step = h;

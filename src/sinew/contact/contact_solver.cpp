@@ -34,6 +34,14 @@ inline void apply_impulse(const Impact& i, const Vec3& change, std::vector<Vec3>
   for (std::size_t a = 1; a < 4; ++a) v[i.slot[a]] += i.share[a] * change;
 }
 
+// The relative acceleration of the free nodes of a contact along the normal by gravity [m/s2].
+double relative_gravity(const Model& model, const Contact& c, const Vec3& gravity) {
+  double free = 0.0;
+  for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a)
+    if (model.inverse_mass[uz(c.node[a])] > 0.0) free += c.weight[a];
+  return free * c.normal.dot(gravity);
+}
+
 // The acceleration along the normal [m/s2].
 double acceleration(const Model& model, const Contact& c, const std::vector<Vec3>& force) {
   Vec3 sum = Vec3::Zero();
@@ -66,8 +74,8 @@ double least_without_bounce(const Arrival& arrival, double h) {
 }
 
 // Sets the velocity along the normal that a contact must end with.
-void aim(const Model& model, const std::vector<Vec3>& force, double mean_step, double h,
-         const Vec3& velocity, Impact& impact, Arrival& arrival) {
+void aim(const Model& model, const std::vector<Vec3>& force, const Vec3& gravity, double mean_step,
+         double h, const Vec3& velocity, Impact& impact, Arrival& arrival) {
   const Contact& c = *arrival.contact;
   arrival.known = false;
   impact.speed = Vec3::Zero();
@@ -76,16 +84,17 @@ void aim(const Model& model, const std::vector<Vec3>& force, double mean_step, d
   impact.least = least_without_bounce(arrival, h);
   arrival.bounces = false;
   if (c.restitution == 0.0 || !(c.gap < 0.0)) return;
-  const double pull = mean_step * acceleration(model, c, force);
-  const double after = velocity_after_impact(arrival.velocity - pull, pull, c.restitution);
+  const double before = arrival.velocity - mean_step * acceleration(model, c, force);
+  const double pull = mean_step * relative_gravity(model, c, gravity);
+  const double after = velocity_after_impact(before, pull, c.restitution);
   arrival.bounces = after > std::max(0.0, impact.least);
   if (arrival.bounces) impact.least = after;
 }
 
 // Fills impacts, arrivals and the slots of their nodes.
 void find_impacts(const Model& model, const std::vector<Contact>& contacts,
-                  const std::vector<Vec3>& force, double mean_step, double h, const State& state,
-                  ContactScratch& s) {
+                  const std::vector<Vec3>& force, const Vec3& gravity, double mean_step, double h,
+                  const State& state, ContactScratch& s) {
   s.node.assign(1, -1);
   s.predicted.assign(1, Vec3::Zero());
   s.slot.resize(model.inverse_mass.size(), 0);
@@ -118,7 +127,7 @@ void find_impacts(const Model& model, const std::vector<Contact>& contacts,
     impact.impulse = 0.0;
     impact.friction_impulse = Vec3::Zero();
     s.arrivals[n].contact = &c;
-    aim(model, force, mean_step, h, velocity, impact, s.arrivals[n]);
+    aim(model, force, gravity, mean_step, h, velocity, impact, s.arrivals[n]);
     ++n;
   }
   s.impacts.resize(n);
@@ -288,12 +297,12 @@ double move_nodes(const Model& model, const std::vector<Vec3>& force, double mea
 }  // namespace
 
 ContactReport solve_contacts(const Model& model, const std::vector<Contact>& contacts,
-                             const std::vector<Vec3>& force, double h, State& state,
-                             ContactScratch& s) {
+                             const std::vector<Vec3>& force, const Vec3& gravity, double h,
+                             State& state, ContactScratch& s) {
   ContactReport report;
   std::vector<ContactForce>& contact_forces = state.reactions.contacts;
   const double mean_step = 0.5 * (state.last_step + h);
-  find_impacts(model, contacts, force, mean_step, h, state, s);
+  find_impacts(model, contacts, force, gravity, mean_step, h, state, s);
   if (s.impacts.empty()) {
     contact_forces.clear();
     return report;

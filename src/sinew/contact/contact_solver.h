@@ -58,7 +58,7 @@ struct ContactScratch {
 // Corrects a step of length h that violates the contacts. `state` holds the predicted positions and
 // half-step velocities and, in last_step, the length of the step before; `force` is the force of
 // the step [N] (nodes), `contacts` are the contacts at the predicted positions, sorted by
-// comes_before().
+// comes_before(). `gravity` [m/s2], a part of the force, tells a bounce from rest.
 //
 // Each contact gets the impulse that ends the step with a gap of at least 0 and, if it closes, with
 // at least the velocity of its bounce (contact/restitution.h), and a friction impulse of at most mu
@@ -73,7 +73,7 @@ struct ContactScratch {
 //
 // Adds the forces of the bodies on every obstacle to state.obstacle_force.
 ContactReport solve_contacts(const Model& model, const std::vector<Contact>& contacts,
-                             const std::vector<Vec3>& force, double h, State& state,
-                             ContactScratch& scratch);
+                             const std::vector<Vec3>& force, const Vec3& gravity, double h,
+                             State& state, ContactScratch& scratch);
 
 }  // namespace sinew

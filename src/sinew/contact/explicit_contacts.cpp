@@ -153,7 +153,7 @@ ContactReport ExplicitContacts::step(const Controls& controls, const std::vector
   find(controls, before, force, h, state);
   const auto solve = [&] {
     state.obstacle_force.assign(model_.obstacles.size(), Vec3::Zero());
-    return solve_contacts(model_, contacts_, force, h, state, scratch_);
+    return solve_contacts(model_, contacts_, force, controls.gravity, h, state, scratch_);
   };
   ContactReport report;
   if (slides_far(before, state)) {

@@ -86,13 +86,15 @@ double potential_energy(const Configuration& at, std::span<const double> tet_vol
 
 Energies measure_energies(const Model& model, const Controls& controls, const State& state,
                           const std::vector<Vec3>& force) {
-  const std::vector<Vec3> v = synchronous_velocity(model, state, force);
   const std::vector<Vec3>& w = state.half_velocity;
   Energies e;
   e.kinetic = parallel_sum(model.node_count(), [&](Index i) {
     const auto k = uz(i);
-    // w- . w+ with w+ = w- + 2 (v - w-)
-    return model.inverse_mass[k] > 0.0 ? 0.5 * model.mass[k] * w[k].dot(2.0 * v[k] - w[k]) : 0.0;
+    // m w- . w+ with w+ = w- + h a. The contact forces of the step before are no part of it: the
+    // contacts of the next step count their work whole (contact/contact_solver.cpp).
+    return model.inverse_mass[k] > 0.0
+               ? 0.5 * w[k].dot(model.mass[k] * w[k] + state.last_step * force[k])
+               : 0.0;
   });
   const Configuration at = configuration(model, controls, state);
   e.gravity = GravityTerm::energy(at) + energy_of(Account::gravity, at);

@@ -2,6 +2,8 @@
 // this list (docs/adding-a-force.md).
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <span>
 #include <vector>
 
@@ -63,6 +65,10 @@ struct Energies {
   // to the step's error. dissipated and work_in are those until the time of the positions: half of
   // the work of the step in progress is part of them.
   double total() const { return kinetic + elastic + gravity + contact + dissipated - work_in; }
+  double largest_entry() const {
+    return std::max({std::abs(kinetic), std::abs(elastic), std::abs(gravity), std::abs(contact),
+                     std::abs(dissipated), std::abs(work_in)});
+  }
 };
 // `force`: of all terms at the state [N] (nodes).
 Energies measure_energies(const Model& model, const Controls& controls, const State& state,

@@ -120,9 +120,8 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
   }
 }
 
-void Recorder::record(const Controls& controls, const RunState& run, const std::vector<Vec3>& force,
-                      ContactFinder* finder) {
-  const Energies e = measure_energies(model_, controls, run.state, force);
+void Recorder::record(const Controls& controls, const RunState& run, const Energies& e,
+                      const std::vector<Vec3>& force, ContactFinder* finder) {
   if (vtu_) {
     const std::string file = frame_file(scene_, run.frame_times.size() - 1);
     io::write_file(folder_ / file, format_frame(model_, run, force, encoding_, cells_));

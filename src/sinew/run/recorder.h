@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sinew/contact/contact_finder.h"
+#include "sinew/forces/terms.h"
 #include "sinew/io/pvd.h"
 #include "sinew/io/vtu.h"
 #include "sinew/model/controls.h"
@@ -25,8 +26,8 @@ class Recorder {
 
   // Writes the current state as the last frame of run.frame_times. `force`: the sum of all terms at
   // the state [N] (nodes). `finder`: null if nothing can touch.
-  void record(const Controls& controls, const RunState& run, const std::vector<Vec3>& force,
-              ContactFinder* finder);
+  void record(const Controls& controls, const RunState& run, const Energies& energies,
+              const std::vector<Vec3>& force, ContactFinder* finder);
 
   // Waits until everything written so far is on the disk. Throws Error(io).
   void sync();

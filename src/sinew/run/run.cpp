@@ -156,7 +156,10 @@ class Runner {
 
   void record() {
     world_.log_frame();
-    if (recorder_) recorder_->record(world_.controls(), run_, force(), world_.finder());
+    const Energies e = measure_energies(world_.model(), world_.controls(), run_.state, force());
+    run_.peak_energy = std::max(run_.peak_energy, e.largest_entry());
+    run_.peak_drift = std::max(run_.peak_drift, std::abs(e.total() - run_.start_energy));
+    if (recorder_) recorder_->record(world_.controls(), run_, e, force(), world_.finder());
   }
 
   // What the checkpoint counts on is on the disk before it.
@@ -207,8 +210,9 @@ class Runner {
       s.warnings.push_back("implicit steps know no restitution: every impact is plastic");
     }
     if (run_.stepper != StepperKind::rest) {  // a rest state has no motion to account for
-      const std::string open = account_warning(s.energy, s.energy_drift);
-      if (!open.empty()) s.warnings.push_back(open);
+      for (std::string warning :
+           {account_warning(run_), crushed_warning(world_.model(), run_.state.position)})
+        if (!warning.empty()) s.warnings.push_back(std::move(warning));
     }
     if (run_.recovery_steps > 0) {
       s.warnings.push_back(fmt::format(

@@ -11,6 +11,7 @@
 #include "sinew/forces/springs.h"
 #include "sinew/forces/strain_limits.h"
 #include "sinew/forces/volume.h"
+#include "sinew/forces/volume_law.h"
 #include "sinew/sim/obstacle_reading.h"
 #include "sinew/solver/implicit.h"
 
@@ -127,19 +128,33 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   return s;
 }
 
-std::string account_warning(const Energies& energy, double drift) {
+std::string account_warning(const RunCounters& c) {
   constexpr double closes = 0.01;   // share of the largest entry
   constexpr double nothing = 1e-9;  // [J] below this, rounding
-  double largest = 0.0;
-  for (const double e : {energy.kinetic, energy.elastic, energy.gravity, energy.contact,
-                         energy.dissipated, energy.work_in})
-    largest = std::max(largest, std::abs(e));
-  if (!(std::abs(drift) > std::max(nothing, closes * largest))) return {};
+  if (!(c.peak_drift > std::max(nothing, closes * c.peak_energy))) return {};
   return fmt::format(
-      "the energy account does not close: {:.3g} J {}, {:.2g} % of its largest entry; a smaller dt "
-      "or safety makes it smaller",
-      std::abs(drift), drift > 0.0 ? "came from nothing" : "were lost by the steps",
-      100.0 * std::abs(drift) / largest);
+      "the energy account does not close: it was off by up to {:.3g} J, {:.2g} % of its largest "
+      "entry{}; a smaller dt or safety makes it smaller",
+      c.peak_drift, 100.0 * c.peak_drift / c.peak_energy,
+      c.recovery_steps > 0 ? ", where tissue was turned inside out" : "");
+}
+
+std::string crushed_warning(const Model& model, const std::vector<Vec3>& x) {
+  constexpr double many = 0.05;
+  for (const Body& body : model.bodies) {
+    std::size_t crushed = 0;
+    for (auto t = uz(body.tets.begin); t < uz(body.tets.end); ++t) {
+      const double ratio = signed_volume(x, model.tets[t]) / model.rest_volume[t];
+      if (ratio < guard_threshold) ++crushed;
+    }
+    if (static_cast<double>(crushed) <= many * static_cast<double>(body.tets.size())) continue;
+    return fmt::format(
+        "body '{}' is crushed: {} of its {} tets have less than {:.0f} % of their volume, where "
+        "only the guard against inversion holds them and no material law is right; take smaller "
+        "loads, a stiffer material or a finer mesh",
+        body.name, crushed, body.tets.size(), 100.0 * guard_threshold);
+  }
+  return {};
 }
 
 nlohmann::ordered_json to_json(const Summary& s) {
@@ -217,6 +232,9 @@ nlohmann::ordered_json to_json(const Summary& s) {
     if (field.key.empty()) return;
     json[nlohmann::ordered_json::json_pointer("/" + std::string(field.key))] = value;
   });
+  // What failed has no residual.
+  if (s.stepper == StepperKind::rest && s.status == RunStatus::diverged)
+    json["static"]["residual"] = nullptr;
   return json;
 }
 

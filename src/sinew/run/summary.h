@@ -84,9 +84,12 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
                   const std::vector<std::string>& meshes, RunState& run,
                   const std::vector<Vec3>& force, ContactFinder* finder);
 
-// Why the energy account is not to be trusted: its total has changed by more than a hundredth of
-// its largest entry. Empty: it closes.
-std::string account_warning(const Energies& energy, double drift);
+// Why the energy account is not to be trusted: at the end of some frame its total was off by more
+// than a hundredth of its largest entry. Empty: it closes.
+std::string account_warning(const RunCounters& counters);
+
+// The first body of which more than one tet in 20 has less than 40 % of its volume. Empty: none.
+std::string crushed_warning(const Model& model, const std::vector<Vec3>& x);
 
 // The object of summary.json. docs/output.md lists its keys.
 nlohmann::ordered_json to_json(const Summary& summary);

@@ -11,7 +11,9 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
+#include <ctime>
 #include <iterator>
+#include <optional>
 #include <system_error>
 #include <vector>
 
@@ -55,6 +57,7 @@ std::string mesher() {
 
 // The programs that run(), in any thread, waits for; 0: a free place.
 std::array<std::atomic<pid_t>, 16> children{};
+std::atomic<int> starting{0};  // threads with a child that is not listed yet
 static_assert(std::atomic<pid_t>::is_always_lock_free);  // a signal handler reads them
 
 // Lists a child while its id is its own: not beyond the wait for its end.
@@ -78,6 +81,29 @@ class Listed {
   std::atomic<pid_t>* place_ = nullptr;
 };
 
+// Between the start of a child and its place in the list. The handler of a signal that ends the
+// program waits for it, so this thread must not run that handler: its signals are blocked.
+class Starting {
+ public:
+  Starting() {
+    sigset_t ends;
+    sigemptyset(&ends);
+    sigaddset(&ends, SIGINT);
+    sigaddset(&ends, SIGTERM);
+    pthread_sigmask(SIG_BLOCK, &ends, &before_);
+    ++starting;
+  }
+  Starting(const Starting&) = delete;
+  Starting& operator=(const Starting&) = delete;
+  ~Starting() {
+    --starting;
+    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
+  }
+
+ private:
+  sigset_t before_{};
+};
+
 // Runs a program and waits. Returns its exit code, or a negative errno if it could not be started;
 // `told` receives its standard error.
 int run(const std::vector<std::string>& command, std::string& told) {
@@ -89,11 +115,16 @@ int run(const std::vector<std::string>& command, std::string& told) {
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
   posix_spawn_file_actions_adddup2(&actions, pipe_ends[1], STDERR_FILENO);
   pid_t child = 0;
-  const int failure = spawn(command, actions, child);
+  int failure = 0;
+  std::optional<Listed> listed;
+  {
+    const Starting start;
+    failure = spawn(command, actions, child);
+    if (failure == 0) listed.emplace(child);
+  }
   posix_spawn_file_actions_destroy(&actions);
   close(pipe_ends[1]);
   if (failure == 0) {
-    const Listed listed(child);
     std::array<char, 512> buffer{};
     ssize_t got = 0;
     while ((got = read(pipe_ends[0], buffer.data(), buffer.size())) > 0 ||
@@ -105,6 +136,7 @@ int run(const std::vector<std::string>& command, std::string& told) {
   }
   close(pipe_ends[0]);
   if (failure != 0) return -failure;
+  listed.reset();
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
@@ -181,6 +213,8 @@ struct Removed {
 }  // namespace
 
 void end_meshers() noexcept {
+  constexpr timespec wait = {0, 1'000'000};
+  for (int n = 0; n < 1000 && starting.load() > 0; ++n) nanosleep(&wait, nullptr);
   for (const std::atomic<pid_t>& child : children)
     if (const pid_t id = child.load(); id > 0) kill(id, SIGTERM);
 }

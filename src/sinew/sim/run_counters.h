@@ -31,6 +31,8 @@ namespace sinew {
   X(double, friction_work, c + r.friction, "friction_work", "turned to heat by contacts [J]")      \
   X(std::int64_t, limit_sweeps, c + r.limit_sweeps, "limits/sweeps", "sweeps over limited springs") \
   X(std::int64_t, unmet_limits, c + (r.limits_met ? 0 : 1), "limits/unmet_steps", "steps that ended with a limit violated") \
+  X(double, peak_energy, c, "energy/peak", "largest entry of the energy account at the end of any frame [J]") \
+  X(double, peak_drift, c, "energy/peak_drift", "largest change of its total [J]")                 \
   X(std::int64_t, peak_inverted_tets, c, "peak_inverted_tets", "the most at the end of any frame") \
   X(double, peak_stretch, c, "peak_stretch", "largest of all frames [-]")                          \
   X(double, peak_compress, c, "peak_compress", "largest of all frames [-]")

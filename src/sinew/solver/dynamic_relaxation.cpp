@@ -17,8 +17,7 @@ namespace sinew {
 NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double start_time,
                                              double time, const StaticOptions& options,
                                              StaticProgress progress, State& state) {
-  constexpr int few = 10;                    // Newton steps
-  constexpr double most_work_falling = 5e7;  // Hessian products times nodes, about 10 s
+  constexpr int few = 10;        // Newton steps
   constexpr double near = 1e-4;  // Newton's method is tried below this share of the load
   double h = 1.0 / 30.0;         // [s]
   double residual = 1.0;         // the force that still moves the body, as a share of the load
@@ -33,7 +32,7 @@ NewtonReport StaticSolver::relax_dynamically(const Controls& controls, double st
     std::fill(velocity.begin(), velocity.end(), Vec3::Zero());
     fastest = 0.0;
   };
-  const double most_products = most_work_falling / static_cast<double>(model_.node_count());
+  const double most_products = options.most_work / static_cast<double>(model_.node_count());
   while (h > 1e-6 && report.newton <= 10 * options.most_newton && report.products < most_products) {
     const State before = state;
     inertial = before.position;

@@ -17,10 +17,6 @@ namespace {
 constexpr double shortest_step = 1e-5;  // [s]
 constexpr double longest_step = 100.0;  // [s]
 constexpr int most_steps = 1000;
-// Hessian products times nodes after which a search is given up: about 12 s, and for a part of the
-// load 2 s.
-constexpr double most_work_of_all = 1.2e8;
-constexpr double most_work_of_part = 2e7;
 constexpr double reach_in_sizes = 20.0;  // a body that moves this many times its size is not held
 
 Vec3 centre(const Model& model, const Body& body, const Field& x) {
@@ -47,16 +43,15 @@ const Body* find_escaping(const Model& model, const Field& from, const Field& x)
 
 // Steps of backward Euler that start without velocity, x_(n+1) the minimum of
 //   E(x) + |x - x_n|_M^2 / (2 h^2)
-// under a share of the loads, with the contacts on the way from x_n, friction included: every step
+// with the contacts on the way from x_n, friction included: every step
 // lowers the energy, so the bodies sink onto each other and never pass through (the proximal point
 // method, Rockafellar 1976). h grows, until the inertial force M (x_(n+1) - x_n) / h^2, the force
 // that is out of balance, is within the tolerance.
-NewtonReport StaticSolver::rest_by_contact(const Controls& controls, double share,
-                                           const StaticOptions& options, StaticProgress progress,
-                                           State& state) {
+NewtonReport StaticSolver::rest_by_contact(const Controls& controls, const StaticOptions& options,
+                                           StaticProgress progress, State& state) {
   const Field start = state.position;
   const Field outer = outer_forces(model_, controls, state);
-  double load = share * std::sqrt(dot(outer, outer));  // [N]
+  double load = std::sqrt(dot(outer, outer));  // [N]
   double mass2 = 0.0;
   for (std::size_t i = 0; i < start.size(); ++i)
     if (model_.inverse_mass[i] > 0.0) mass2 += model_.mass[i] * model_.mass[i];
@@ -67,15 +62,14 @@ NewtonReport StaticSolver::rest_by_contact(const Controls& controls, double shar
   NewtonReport report;
   report.residual = 1.0;
   std::unique_ptr<Constraints> constraints;
-  const double most_products = (share < 1.0 ? most_work_of_part : most_work_of_all) /
-                               static_cast<double>(model_.node_count());
+  const double most_products = options.most_work / static_cast<double>(model_.node_count());
   for (int step = 0; step < most_steps && h > shortest_step && report.products < most_products;
        ++step) {
     const State before = state;
     const double inertia = 1.0 / (h * h);
     if (!constraints) constraints = std::make_unique<Constraints>(model_, inertia, 1.0 / h, true);
     constraints->start(controls, state, &before.position, 0.0);
-    Objective objective{model_, controls, &outer, 1.0 - share};
+    Objective objective{model_, controls};
     objective.inertia = inertia;
     objective.inertial = &before.position;
     objective.constraints = constraints.get();

@@ -13,6 +13,7 @@
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/model/mean_edge.h"
+#include "sinew/solver/limit_load.h"
 #include "sinew/solver/newton.h"
 
 namespace sinew {
@@ -23,13 +24,8 @@ constexpr double turn_per_load_step = 20.0 * 3.14159265358979 / 180.0;  // [rad]
 // whose kappa is at most this many times mu: W(4) at nu = 0.499 takes 41 instead of 74 at 15 kPa,
 // 19 instead of 23 at 1.5 MPa.
 constexpr double soft_volume = 30.0;
-constexpr int cuts_before_falling = 2;  // then dynamic relaxation is tried, once
-// The search for the largest load that rests ends when it is known to this share of the load, or
-// when the Hessian products after the first failure, times the nodes, exceed this number: some 20
-// s.
-constexpr double load_accuracy = 0.02;
-constexpr double most_work = 2e8;
-constexpr int most_halves = 5;  // of the load of bodies in contact
+constexpr int cuts_before_falling = 2;       // then dynamic relaxation is tried, once
+constexpr double shortest_load_step = 0.02;  // of the change of the loads
 
 // The largest rotation angle [rad] of a pin between two times.
 double pins_turn(const Controls& controls, double from, double to) {
@@ -205,21 +201,6 @@ double proximal_stiffness(const Model& model, const Controls& controls) {
   return 0.01 * controls.gravity.norm() / mean_edge(model);
 }
 
-[[noreturn]] void throw_no_rest(double done, double failed, const StepReport& report) {
-  const std::string found =
-      done > 0.0
-          ? fmt::format("a rest state is found under {:.2g} of the load, and none under {:.2g}",
-                        done, failed)
-          : fmt::format("none is found even under {:.2g} of the load", failed);
-  throw Error(ErrorKind::diverged,
-              fmt::format("no rest state: {}. The load is gravity, forces and pressures, and the "
-                          "motion of the pins. {} Newton steps were taken; at the last one the "
-                          "forces on the free nodes were {:.2g} of what they carry",
-                          found, report.newton, report.residual),
-              "make the load smaller or the material stiffer: a load above the limit has no rest "
-              "state; or take stepper = \"verlet\" to see the motion");
-}
-
 }  // namespace
 
 StaticSolver::StaticSolver(const Model& model)
@@ -338,33 +319,40 @@ int StaticSolver::move_pins_to(const Controls& controls, double start_time, doub
   return products;
 }
 
-// Rest by contact under the whole load; if there is none, the share of the load that rests is
-// searched for the message.
-StepReport StaticSolver::settle_by_contact(const Controls& controls, const StaticOptions& options,
-                                           StepReport report, State& state) {
-  const State start = state;
-  const auto rest = [&](double share) {
-    state = start;
-    ++report.load_steps;
-    const StaticProgress progress{report.load_steps, share, report.newton, 0.0};
-    const NewtonReport found = rest_by_contact(controls, share, options, progress, state);
-    report.newton += found.newton;
-    report.products += found.products;
-    report.residual = found.residual;
-    report.limits_met = found.within;
-    report.stopped = found.stopped;
-    return found.rests || found.stopped;
-  };
-  if (!rest(1.0)) {
-    double rests = 0.0;
-    double fails = 1.0;
-    for (int halves = 0; halves < most_halves; ++halves) {
-      const double share = 0.5 * (rests + fails);
-      (rest(share) ? rests : fails) = share;
-      if (report.stopped) break;
-    }
-    if (!report.stopped) throw_no_rest(rests, fails, report);
+void StaticSolver::throw_no_rest(const Controls& controls, double time,
+                                 const StaticOptions& options, const State& start,
+                                 const StepReport& report) const {
+  std::string found;
+  if (options.finds_limit_load) {
+    const LimitLoad limit = find_limit_load(model_, controls, time, options, start);
+    found =
+        limit.rests > 0.0
+            ? fmt::format(
+                  "short trials found one under {:.2g} of the loads and "
+                  "none under {:.2g}",
+                  limit.rests, limit.fails)
+            : fmt::format("short trials found none even under {:.2g} of the loads", limit.fails);
+    found += " (gravity, forces and pressures; pins move as given). ";
   }
+  throw Error(ErrorKind::diverged,
+              fmt::format("no rest state: {}{} Newton steps were taken; at the last one the forces "
+                          "on the free nodes were {:.2g} of what they carry",
+                          found, report.newton, report.residual),
+              "make the load smaller or the material stiffer: a load above the limit has no rest "
+              "state; or take stepper = \"verlet\" to see the motion");
+}
+
+StepReport StaticSolver::settle_by_contact(const Controls& controls, const StaticOptions& options,
+                                           const State& start, StepReport report, State& state) {
+  ++report.load_steps;
+  const NewtonReport found =
+      rest_by_contact(controls, options, {report.load_steps, 1.0, 0, 0.0}, state);
+  report.newton += found.newton;
+  report.products += found.products;
+  report.residual = found.residual;
+  report.limits_met = found.within;
+  report.stopped = found.stopped;
+  if (!found.rests && !found.stopped) throw_no_rest(controls, state.time, options, start, report);
   report.contacts = contacts_at_rest_;
   state.half_velocity.assign(state.position.size(), Vec3::Zero());
   ++state.step;
@@ -374,6 +362,7 @@ StepReport StaticSolver::settle_by_contact(const Controls& controls, const Stati
 StepReport StaticSolver::solve(const Controls& controls, double time, const StaticOptions& options,
                                State& state) {
   StepReport report;
+  const State start = state;
   const double start_time = state.time;
   std::fill(state.half_velocity.begin(), state.half_velocity.end(), Vec3::Zero());
   state.last_step = 0.0;
@@ -387,7 +376,7 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
 
   if (support.by_contact) {
     report.products = move_pins_to(controls, start_time, time, 1.0, state);
-    return settle_by_contact(controls, options, report, state);
+    return settle_by_contact(controls, options, start, report, state);
   }
 
   // The dead force makes the start of the solve a rest state, so the change to the new loads can be
@@ -446,9 +435,9 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
     if (failures++ == 0) products_before = report.products;
     const double work = static_cast<double>(report.products - falls.products - products_before) *
                         static_cast<double>(model_.node_count());
-    if (failed - done < load_accuracy || work > most_work ||
+    if (failed - done < shortest_load_step || work > options.most_work ||
         report.newton - falls.newton > options.most_newton) {
-      throw_no_rest(done, failed, report);
+      throw_no_rest(controls, time, options, start, report);
     }
     state = before;
     if (cuts == cuts_before_falling && falls.newton == 0) {

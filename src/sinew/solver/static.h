@@ -26,7 +26,10 @@ struct StaticOptions {
   double tolerance = 1e-6;  // residual to reach [-]
   int max_newton = 100;     // Newton steps within a load step before it is cut in half
   int most_newton = 500;    // in total; no load step is repeated after them
-  int min_load_steps = 1;   // pins that rotate far take more load steps (one per 20 degrees)
+  // In total, after the first failure: Hessian products times nodes. About 6 s.
+  double most_work = 5e7;
+  bool finds_limit_load = true;  // where there is no rest state, for the message
+  int min_load_steps = 1;        // pins that rotate far take more load steps (one per 20 degrees)
   const std::atomic<bool>* stop = nullptr;  // ends after the current Newton step
   std::function<void(const StaticProgress&)> on_progress;
 };
@@ -50,8 +53,8 @@ class StaticSolver {
   //
   // If Newton's method does not converge, pins and loads are applied in smaller steps; after two
   // cuts dynamic relaxation is tried once. Throws Error(input) if nothing holds a body against the
-  // forces on it, and Error(diverged) if no rest state is found. If options.stop ends the search,
-  // the state is the best so far.
+  // forces on it, and Error(diverged) if no rest state is found, with the share of the loads that
+  // has one (solver/limit_load.h). If options.stop ends the search, the state is the best so far.
   StepReport solve(const Controls& controls, double time, const StaticOptions& options,
                    State& state);
 
@@ -65,10 +68,13 @@ class StaticSolver {
   ForceEvaluator& forces() { return forces_; }
 
  private:
-  NewtonReport rest_by_contact(const Controls& controls, double share, const StaticOptions& options,
+  NewtonReport rest_by_contact(const Controls& controls, const StaticOptions& options,
                                StaticProgress progress, State& state);
   StepReport settle_by_contact(const Controls& controls, const StaticOptions& options,
-                               StepReport report, State& state);
+                               const State& start, StepReport report, State& state);
+  [[noreturn]] void throw_no_rest(const Controls& controls, double time,
+                                  const StaticOptions& options, const State& start,
+                                  const StepReport& report) const;
   NewtonReport relax_dynamically(const Controls& controls, double start_time, double time,
                                  const StaticOptions& options, StaticProgress progress,
                                  State& state);
