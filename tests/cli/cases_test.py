@@ -8,7 +8,7 @@ import json
 import math
 import unittest
 
-from cli_support import ROOT, CliTest
+from cli_support import DIVERGED, ROOT, UNSTABLE, CliTest
 
 DATA = ROOT / "tests" / "data"
 
@@ -72,6 +72,71 @@ class Sheets(CaseTest):
         tip = -s["probes"]["tip"]["displacement"][1]
         self.assertGreater(tip, 0.9 * 2.89e-3)
         self.assertLess(tip, 1.1 * 3.18e-3)
+
+
+class Impacts(CaseTest):
+    def closes(self, s):
+        e = s["energy"]
+        self.assertLess(e["peak_drift"], 0.01 * e["peak"])
+
+    def test_a_ball_that_bounces_makes_no_energy(self):
+        self.closes(self.summary("behaviour/bounce.toml"))
+        for restitution in (0, 0.5, 0.8, 1):
+            s = self.summary("behaviour/bounce-energy.toml", f"ground.restitution={restitution}")
+            self.closes(s)
+            e = s["energy"]
+            self.assertLess(e["kinetic"] + e["elastic"] + e["gravity"], 1e-3)
+
+    def test_a_dropped_cube_makes_no_energy(self):
+        s = self.summary("truth/cube-drop.toml")
+        self.closes(s)
+        self.assertLess(s["energy"]["drift"], 0.0104)
+
+    # An elastic blow of a rod at v gives a block of mass m at most 2 m v^2.
+    def test_a_fast_tool(self):
+        s = self.summary("behaviour/fast-tool.toml",
+                         "obstacle.rod.path=[{time=0},{time=0.5,move=[1.0,0,0]}]")
+        self.assertLess(s["energy"]["kinetic"], 2 * 0.229 * 2**2)
+        self.closes(s)
+        for speed in (4, 10, 20):
+            path = f"obstacle.rod.path=[{{time=0}},{{time={1 / speed},move=[1.0,0,0]}}]"
+            result = self.run_sinew("run", DATA / "behaviour/fast-tool.toml", "--no-output",
+                                    "--set", path, code=DIVERGED)
+            self.assertIn("shear waves", result.stderr)
+
+    def test_a_given_step_that_becomes_unstable_is_refused(self):
+        result = self.run_sinew("run", DATA / "truth/swing.toml", "--no-output", code=UNSTABLE)
+        self.assertIn("dt", result.stderr)
+
+    def test_friction_only_makes_heat(self):
+        s = self.summary("behaviour/grasp.toml")
+        self.assertGreater(s["friction_work"], 0.0)
+        self.assertGreaterEqual(s["energy"]["dissipated"], s["friction_work"])
+
+
+class Turning(CaseTest):
+    def test_a_free_spin_keeps_its_energy(self):
+        for young, right in (("50e3", 0.11579), ("1e6", 0.11590)):
+            s = self.summary("behaviour/spin.toml", "stepper=\"implicit\"", "duration=3",
+                             f"b.young={young}")
+            self.near(s["energy"]["kinetic"], right, 0.005)
+
+
+class Rest(CaseTest):
+    def test_a_body_on_a_body(self):
+        s = self.summary("behaviour/static-stack.toml")
+        self.near(s["probes"]["upper"]["position"][1], 0.0742, 0.002)
+
+    def test_a_plate_on_foam(self):
+        s = self.summary("behaviour/plush.toml", "stepper=\"static\"", "plush.young=20000")
+        self.near(s["probes"]["top"]["position"][1], 0.931 * 0.08, 0.005)
+
+    def test_a_load_above_the_limit_is_named(self):
+        result = self.run_sinew("run", DATA / "behaviour/cavity.toml", "--no-output", "--set",
+                                "force.p.pressure=6000", code=DIVERGED)
+        self.assertIn("of the loads", result.stderr)
+        s = self.summary("behaviour/cavity.toml", "force.p.pressure=6000", code=DIVERGED)
+        self.assertIsNone(s["static"]["residual"])
 
 
 if __name__ == "__main__":
