@@ -185,6 +185,10 @@ std::string format_table(const Summary& s, std::span<const std::string> told) {
                                 o.name, o.force.norm(), o.force.x(), o.force.y(), o.force.z(),
                                 grouped(o.contacts), scaled(o.depth, "m")));
   }
+  for (const PinReading& p : s.pins) {
+    row("pin", fmt::format("{} bears {:.4g} N: ({:.4g}, {:.4g}, {:.4g}) N", p.name, p.force.norm(),
+                           p.force.x(), p.force.y(), p.force.z()));
+  }
   row("state hash", s.state_hash);
   if (!s.look_for.empty()) t += fmt::format("\nLook for: {}\n", s.look_for);
   for (const std::string& w : s.warnings) {

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "sinew/base/random.h"
+#include "sinew/forces/stress.h"
 #include "sinew/forces/terms.h"
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
@@ -199,20 +200,20 @@ TetMesh with_sliver(Index seed) {
   return mesh;
 }
 
-TEST(Network, PressureIsMinusTheMeanStress) {
+TEST(Network, PressureAtRestAndUnderAUniformStrain) {
   for (const Volume volume : {Volume::node, Volume::tet}) {
     Material material;
     material.volume = volume;
     const Model m = irregular_box(material);
     State state = initial_state(m);
-    for (const double p : measure_pressure(m, state.position)) {
-      EXPECT_NEAR(p, 0.0, 1e-9 * material.young);
+    for (const Mat3& s : measure_stress(m, state.position)) {
+      EXPECT_NEAR(pressure_of(s), 0.0, 1e-9 * material.young);
     }
     const double strain = 1e-6;
     state.position = mapped(m.rest_position, (1.0 - strain) * Mat3::Identity());
     const double bulk = material.young / (3.0 * (1.0 - 2.0 * material.poisson));
-    for (const double p : measure_pressure(m, state.position)) {
-      EXPECT_NEAR(p, 3.0 * strain * bulk, 1e-4 * strain * bulk);
+    for (const Mat3& s : measure_stress(m, state.position)) {
+      EXPECT_NEAR(pressure_of(s), 3.0 * strain * bulk, 1e-4 * strain * bulk);
     }
   }
 }

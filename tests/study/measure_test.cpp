@@ -48,8 +48,8 @@ TEST(Measure, ARebound) {
   EXPECT_GT(sink, 0.0005);
   EXPECT_LT(sink, contact);
   const double leave = experiment.measure(quantity(Kind::leave, "gel"));
-  // Nodes that the body presses on the ground do not bounce: part of the energy is lost there.
-  EXPECT_GT(leave, 0.7);
+  // The rest of the energy vibrates.
+  EXPECT_GT(leave, 0.5);
   EXPECT_LT(leave, 1.0);
 }
 

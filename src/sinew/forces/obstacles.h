@@ -153,6 +153,7 @@ struct ObstacleReading {
   Vec3 center = Vec3::Zero();  // [m]
   Vec3 travel = Vec3::Zero();  // of the centre since time 0 [m]
   Vec3 force = Vec3::Zero();   // of the bodies on the obstacle [N]
+  Vec3 torque = Vec3::Zero();  // about the center [N m]; 0 on a soft sphere
   double depth = 0.0;          // of the deepest node [m]
   Index contacts = 0;          // nodes that it presses
 };

@@ -78,8 +78,7 @@ std::vector<Mat3> measure_stress(const Model& model, std::span<const Vec3> x) {
   parallel_for(model.tet_count(), [&](Index i) {
     const auto t = uz(i);
     const Tet& tet = model.tets[t];
-    const double volume =
-        signed_volume(x[uz(tet[0])], x[uz(tet[1])], x[uz(tet[2])], x[uz(tet[3])]);
+    const double volume = signed_volume(x[uz(tet[0])], x[uz(tet[1])], x[uz(tet[2])], x[uz(tet[3])]);
     const double J = volume / model.rest_volume[t];
     if (!s.empty()) stress[t] += s[t] * Mat3::Identity();
     if (model.tet_shear[t] != 0.0) {

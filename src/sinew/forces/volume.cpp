@@ -244,34 +244,6 @@ std::vector<LowTet> find_low_tets(const Model& model, std::span<const Vec3> x) {
   return low;
 }
 
-std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x) {
-  if (!model.has_volume) return {};
-  const std::vector<double> volume = volumes_of_tets(model, x);
-  std::vector<double> pressure = pressures_of_tets(model, x);
-  EdgeState edges;
-  compute_edge_state(model, x, edges);
-  // Of each tet the mean over its edge cells, which hold a sixth of it each.
-  std::vector<double> of_edges(model.tets.size(), 0.0);
-  for (std::size_t k = 0; k < model.edge_tet.size(); ++k) {
-    const auto e = uz(model.edge_tet_cell[k]);
-    const Mat3& F = edges.deformation[e];
-    of_edges[uz(model.edge_tet[k])] +=
-        (model.edge_shear[e] * F.squaredNorm() / 3.0 +
-         edge_pressure(F.determinant(), model.edge_shear[e], model.edge_bulk[e]) *
-             F.determinant()) /
-        6.0;
-  }
-  parallel_for(model.tet_count(), [&](Index i) {
-    const auto t = uz(i);
-    const auto g = shape_gradients(model.rest_position, model.tets[t]);
-    Mat3 F = Mat3::Zero();
-    for (std::size_t a = 0; a < 4; ++a) F += x[uz(model.tets[t][a])] * g[a].transpose();
-    pressure[t] = -(model.tet_shear[t] / 3.0 * F.squaredNorm() +
-                    pressure[t] * volume[t] / model.rest_volume[t] + of_edges[t]);
-  });
-  return pressure;
-}
-
 double volume_energy(const Model& model, std::span<const double> volume) {
   if (!model.has_volume) return 0.0;
   const double of_tets = parallel_sum(model.tet_count(), [&](Index i) {

@@ -86,13 +86,6 @@ inline Vec3 volume_force(const Model& model, const TetState& tets, Index node) {
          stress_on_node(model.edge_cells, tets.edges.stress, node);
 }
 
-// Pressure of every tet [Pa] (tets), > 0 under compression: minus the mean Kirchhoff stress,
-//   p = -(mu |F|^2 / 3 + s v/V),   F the tet's deformation gradient,
-// plus the mean of mu_e |F_e|^2 / 3 + s_e J_e over its edge cells, which at small strains is -K
-// (v/V - 1) with the bulk modulus K. For classic springs it is only the pressure of their volume
-// energy. Empty if the model has no volume terms.
-std::vector<double> measure_pressure(const Model& model, std::span<const Vec3> x);
-
 // W [J] of tets and node cells with these volumes [m3] (tets): zero at rest.
 double volume_energy(const Model& model, std::span<const double> volume);
 

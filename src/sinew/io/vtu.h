@@ -46,6 +46,7 @@ struct VtuData {
   std::vector<VtuArray<Vec3>> point_vectors;
   std::vector<VtuArray<int>> point_integers;
   std::vector<VtuArray<double>> cell_scalars;  // cells: the tets, then the faces
+  std::vector<VtuArray<Mat3>> cell_tensors;    // symmetric: XX, YY, ZZ, XY, YZ, XZ are written
   std::vector<VtuArray<int>> cell_integers;
   std::optional<double> time;  // [s]; written as the field array TimeValue
   // The result of format_vtu_cells for the same tets, faces and encoding, or empty. The cells of a

@@ -2,6 +2,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <iterator>
@@ -20,6 +21,9 @@ namespace {
 constexpr std::size_t block_bytes = std::size_t{1} << 18;
 // Levels above 1 take several times as long for a few per cent: positions hardly repeat.
 constexpr int compression_level = 1;
+
+// The order of VTK's symmetric tensors.
+constexpr std::array<std::string_view, 6> tensor_components = {"XX", "YY", "ZZ", "XY", "YZ", "XZ"};
 
 template <typename T>
 constexpr std::string_view vtk_type = "";
@@ -109,6 +113,8 @@ class VtuWriter {
     fmt::format_to(std::back_inserter(text_), "<DataArray type=\"{}\" Name=\"{}\"", vtk_type<T>,
                    xml_escaped(name));
     if (components > 0) text_ += fmt::format(" NumberOfComponents=\"{}\"", components);
+    for (std::size_t c = 0; components == 6 && c < 6; ++c)
+      text_ += fmt::format(" ComponentName{}=\"{}\"", c, tensor_components[c]);
     if (tuples > 0) text_ += fmt::format(" NumberOfTuples=\"{}\"", tuples);
     if (options_.encoding == VtuEncoding::ascii) {
       line(" format=\"ascii\">");
@@ -171,6 +177,17 @@ class VtuWriter {
     }
   }
 
+  void tensors(const std::vector<VtuArray<Mat3>>& arrays, std::size_t size) {
+    for (const VtuArray<Mat3>& a : arrays) {
+      check_size(a.name, a.values.size(), size);
+      real_array(a.name, 6, [&](auto put) {
+        for (const Mat3& m : a.values)
+          for (const double value : {m(0, 0), m(1, 1), m(2, 2), m(0, 1), m(1, 2), m(0, 2)})
+            put(value);
+      });
+    }
+  }
+
   void points() {
     line("<Points>");
     vectors("Points", data_.points);
@@ -207,6 +224,7 @@ class VtuWriter {
   void cell_data() {
     line("<CellData>");
     scalars(data_.cell_scalars, cell_count());
+    tensors(data_.cell_tensors, cell_count());
     integers(data_.cell_integers, cell_count());
     line("</CellData>");
   }

@@ -10,8 +10,8 @@
 #include "sinew/base/parallel.h"
 #include "sinew/forces/obstacles.h"
 #include "sinew/forces/springs.h"
+#include "sinew/forces/stress.h"
 #include "sinew/forces/terms.h"
-#include "sinew/forces/volume.h"
 #include "sinew/io/file_io.h"
 #include "sinew/io/pvd.h"
 #include "sinew/io/vtu.h"
@@ -39,7 +39,13 @@ std::string probe_header(const Model& model) {
     if (!o.listed) continue;
     for (const char* c : {"x", "y", "z"}) header += fmt::format(",{}.{} [m]", o.name, c);
     for (const char* c : {"fx", "fy", "fz"}) header += fmt::format(",{}.{} [N]", o.name, c);
+    for (const char* c : {"tx", "ty", "tz"}) header += fmt::format(",{}.{} [N m]", o.name, c);
     header += fmt::format(",{0}.travel [m],{0}.against [N]", o.name);
+  }
+  for (const Pin& pin : model.pins) {
+    if (!holds_tissue(model, pin)) continue;
+    for (const char* c : {"fx", "fy", "fz"}) header += fmt::format(",pin.{}.{} [N]", pin.name, c);
+    for (const char* c : {"tx", "ty", "tz"}) header += fmt::format(",pin.{}.{} [N m]", pin.name, c);
   }
   return header;
 }
@@ -140,7 +146,12 @@ void Recorder::record(const Controls& controls, const RunState& run, const Energ
   for (const ObstacleReading& o : read_obstacles(model_, controls, run.state, finder)) {
     add(o.center);
     add(o.force);
+    add(o.torque);
     row += fmt::format(",{},{}", o.travel.norm(), against_travel(o));
+  }
+  for (const PinReading& p : read_pins(model_, controls, run.state, force)) {
+    add(p.force);
+    add(p.torque);
   }
   add_row(probes_, folder_ / "probes.csv", row);
 
@@ -177,7 +188,12 @@ std::string format_frame(const Model& model, const RunState& run, const std::vec
     }
   }
   const std::vector<double> stretch = node_stretch(model, x);
-  const std::vector<double> pressure = measure_pressure(model, x);
+  const std::vector<Mat3> stress = measure_stress(model, x);
+  std::vector<double> pressure(stress.size()), mises(stress.size());
+  parallel_for(model.tet_count(), [&](Index t) {
+    pressure[uz(t)] = pressure_of(stress[uz(t)]);
+    mises[uz(t)] = von_mises(stress[uz(t)]);
+  });
 
   io::VtuData data;
   data.points = std::span(x).first(nodes);
@@ -186,8 +202,8 @@ std::string format_frame(const Model& model, const RunState& run, const std::vec
                         {"velocity", std::span(velocity).first(nodes)}};
   data.point_scalars = {{"stretch", stretch}};
   data.point_integers = {{"pinned", pinned}};
-  data.cell_scalars = {{"volume_ratio", ratio}};
-  if (model.has_volume) data.cell_scalars.push_back({"pressure", pressure});
+  data.cell_scalars = {{"volume_ratio", ratio}, {"pressure", pressure}, {"von_mises", mises}};
+  data.cell_tensors = {{"stress", stress}};
   data.cell_integers = {{"region", model.tet_region}, {"body", body}};
   data.time = run.state.time;
   data.encoded_cells = cells;

@@ -125,6 +125,7 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   s.largest_cell_change = largest_cell_change(model, x);
   s.probes = read_probes(model, x);
   s.obstacles = read_obstacles(model, controls, run.state, finder);
+  s.pins = read_pins(model, controls, run.state, force);
   return s;
 }
 
@@ -180,9 +181,13 @@ nlohmann::ordered_json to_json(const Summary& s) {
   for (const ObstacleReading& o : s.obstacles) {
     obstacles[o.name] = {{"center", vec(o.center)},
                          {"force", vec(o.force)},
+                         {"torque", vec(o.torque)},
                          {"depth", o.depth},
                          {"contacts", o.contacts}};
   }
+  nlohmann::ordered_json pins = nlohmann::ordered_json::object();
+  for (const PinReading& p : s.pins)
+    pins[p.name] = {{"force", vec(p.force)}, {"torque", vec(p.torque)}};
   nlohmann::ordered_json json = {
       {"version", SINEW_VERSION},
       {"status", word_of(s.status)},
@@ -227,6 +232,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
       {"state_hash", s.state_hash},
       {"probes", probes},
       {"obstacles", obstacles},
+      {"pins", pins},
       {"warnings", s.warnings}};
   for_each_counter(s, [&](const CounterField& field, const auto& value) {
     if (field.key.empty()) return;

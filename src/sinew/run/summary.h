@@ -73,6 +73,7 @@ struct Summary : RunCounters {
   double largest_cell_change = 0.0;  // of a node cell's volume, at the end [-]
   std::vector<ProbeReading> probes;
   std::vector<ObstacleReading> obstacles;
+  std::vector<PinReading> pins;
   std::vector<std::string> warnings;
 
   double realtime_factor() const { return wall_seconds > 0.0 ? sim_seconds / wall_seconds : 0.0; }

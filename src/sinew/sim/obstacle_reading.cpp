@@ -4,6 +4,7 @@
 
 #include "sinew/contact/contact.h"
 #include "sinew/contact/contact_finder.h"
+#include "sinew/sim/readings.h"
 
 namespace sinew {
 
@@ -20,6 +21,13 @@ void read_hard(const Model& model, const Controls& controls, const State& state,
                ContactFinder* finder, std::vector<ObstacleReading>& readings) {
   for (std::size_t o = 0; o < readings.size() && o < state.obstacle_force.size(); ++o)
     if (model.obstacles[o].hard()) readings[o].force = state.obstacle_force[o];
+
+  for (const ContactForce& c : state.reactions.contacts) {
+    const Index obstacle = c.id.obstacle();
+    if (obstacle < 0) continue;
+    ObstacleReading& reading = readings[uz(obstacle)];
+    reading.torque -= (place_of(c, state.position) - reading.center).cross(c.force);
+  }
 
   std::vector<Contact> contacts;
   if (finder != nullptr)

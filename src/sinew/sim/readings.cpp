@@ -25,6 +25,35 @@ std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3
   return readings;
 }
 
+bool holds_tissue(const Model& model, const Pin& pin) {
+  return !pin.nodes.empty() && pin.nodes.front() < model.body_node_count();
+}
+
+std::vector<PinReading> read_pins(const Model& model, const Controls& controls, const State& state,
+                                  const std::vector<Vec3>& force) {
+  std::vector<Vec3> all = force;
+  for (const ContactForce& c : state.reactions.contacts)
+    for (std::size_t a = 0; a < c.count(); ++a) all[uz(c.node[a])] += c.weight[a] * c.force;
+  std::vector<PinReading> readings;
+  for (const Pin& pin : model.pins) {
+    if (!holds_tissue(model, pin)) continue;
+    Vec3 center = Vec3::Zero();
+    for (const Index node : pin.nodes) center += state.position[uz(node)];
+    center /= static_cast<double>(pin.nodes.size());
+    ForceSum sum{center};
+    for (const Index node : pin.nodes)
+      sum.add(state.position[uz(node)], all[uz(node)] + model.mass[uz(node)] * controls.gravity);
+    readings.push_back({pin.name, center, sum.force, sum.torque});
+  }
+  return readings;
+}
+
+Vec3 place_of(const ContactForce& c, const std::vector<Vec3>& x) {
+  Vec3 place = Vec3::Zero();
+  for (std::size_t a = 0; a < c.count(); ++a) place += c.weight[a] * x[uz(c.node[a])];
+  return place;
+}
+
 std::int64_t count_inverted(const Model& model, const std::vector<Vec3>& x) {
   return std::count_if(model.tets.begin(), model.tets.end(),
                        [&](const Tet& t) { return signed_volume(x, t) < 0.0; });

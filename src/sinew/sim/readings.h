@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "sinew/model/controls.h"
 #include "sinew/model/model.h"
+#include "sinew/model/state.h"
 
 namespace sinew {
 
@@ -16,6 +18,36 @@ struct ProbeReading {
   Vec3 displacement = Vec3::Zero();  // of that mean, from its rest position [m]
 };
 std::vector<ProbeReading> read_probes(const Model& model, const std::vector<Vec3>& x);
+
+// Whether the pin holds nodes of a body; else it moves an anchor or a mesh obstacle.
+bool holds_tissue(const Model& model, const Pin& pin);
+
+// What tissue does to a pin that holds it.
+struct PinReading {
+  std::string name;
+  Vec3 center = Vec3::Zero();  // mean of its nodes [m]
+  Vec3 force = Vec3::Zero();   // of the body on the pin: elastic and damping forces, contacts, and
+                               // the weight of the nodes that it holds [N]
+  Vec3 torque = Vec3::Zero();  // about the center [N m]
+};
+// Of the pins that hold tissue. `force`: of all terms at the state [N] (nodes), contacts excepted.
+std::vector<PinReading> read_pins(const Model& model, const Controls& controls, const State& state,
+                                  const std::vector<Vec3>& force);
+
+// Forces at places as one force and its torque about a point.
+struct ForceSum {
+  Vec3 about = Vec3::Zero();
+  Vec3 force = Vec3::Zero();
+  Vec3 torque = Vec3::Zero();
+
+  void add(const Vec3& place, const Vec3& f) {
+    force += f;
+    torque += (place - about).cross(f);
+  }
+};
+
+// The place of the node or edge of a contact force [m].
+Vec3 place_of(const ContactForce& c, const std::vector<Vec3>& x);
 
 // Tets with v_t < 0 at positions x.
 std::int64_t count_inverted(const Model& model, const std::vector<Vec3>& x);

@@ -6,26 +6,20 @@
 #include "sinew/forces/terms.h"
 #include "sinew/sim/mover.h"
 #include "sinew/sim/obstacle_reading.h"
+#include "sinew/sim/readings.h"
 #include "sinew/sim/world.h"
 
 namespace sinew::sim {
 namespace {
 
-// Forces at points, summed to one wrench.
-struct Sum {
-  Vec3 about, force = Vec3::Zero(), torque = Vec3::Zero();
+Wrench wrench_of(const ForceSum& sum) {
+  return {point(sum.force), point(sum.torque)};
+}
 
-  void add(const Vec3& place, const Vec3& f) {
-    force += f;
-    torque += (place - about).cross(f);
-  }
-  Wrench wrench() const { return {point(force), point(torque)}; }
-};
-
-template <typename Contact>
-Vec3 place_of(const Contact& c, const std::vector<Vec3>& x) {
+Vec3 place_of_contact(const Contact& c, const std::vector<Vec3>& x) {
   Vec3 place = Vec3::Zero();
-  for (std::size_t a = 0; a < 4 && c.node[a] >= 0; ++a) place += c.weight[a] * x[uz(c.node[a])];
+  for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a)
+    place += c.weight[a] * x[uz(c.node[a])];
   return place;
 }
 
@@ -46,29 +40,29 @@ const std::vector<Vec3>& World::forces() {
 
 Wrench World::wrench(std::size_t obstacle, const Vec3& about) {
   const Obstacle& o = model_->obstacles[obstacle];
-  Sum sum{about};
+  ForceSum sum{about};
   if (!o.hard()) {
     for_each_pressed(*model_, soft_sphere(*model_, *controls_, obstacle, run_.state.time),
                      run_.state.position, [&](std::size_t n, const Vec3&, const Vec3& force) {
                        sum.add(run_.state.position[n], -force);
                      });
-    return sum.wrench();
+    return wrench_of(sum);
   }
   for (const ContactForce& p : run_.state.reactions.contacts)
     if (p.id.obstacle() == static_cast<Index>(obstacle))
       sum.add(place_of(p, run_.state.position), -p.force);
-  return sum.wrench();
+  return wrench_of(sum);
 }
 
 Wrench World::pin_wrench(std::size_t pin, const Vec3& about) {
   const std::vector<Vec3>& force = forces();
   const std::vector<Index>& nodes = model_->pins[pin].nodes;
-  Sum sum{about};
+  ForceSum sum{about};
   for (const Index node : nodes) {
     const auto n = uz(node);
     sum.add(run_.state.position[n], force[n] + model_->mass[n] * controls_->gravity);
   }
-  return sum.wrench();
+  return wrench_of(sum);
 }
 
 ContactFinder* World::finder() {
@@ -107,7 +101,7 @@ void World::contacts(std::size_t obstacle, std::vector<ContactPoint>& out) {
   for (const Contact& c : contacts_) {
     if (c.id.obstacle() != static_cast<Index>(obstacle)) continue;
     const auto most = std::max_element(c.weight.begin(), c.weight.begin() + c.count);
-    out.push_back({point(place_of(c, x)), point(c.normal), -c.gap,
+    out.push_back({point(place_of_contact(c, x)), point(c.normal), -c.gap,
                    c.node[static_cast<std::size_t>(most - c.weight.begin())]});
   }
 }
