@@ -56,6 +56,29 @@ class Truth(CaseTest):
         self.near(s["probes"]["mid"]["displacement"][1], -5.70e-3, 0.055)
 
 
+class Outputs(CaseTest):
+    # The wall bears the whole weight, rho V g.
+    def test_the_force_on_a_pin(self):
+        s = self.summary("truth/w4.toml")
+        self.near(-s["pins"]["wall"]["force"][1], 41.594, 1e-4)
+
+    # Uniaxial strain by 4 % at E = 10 kPa: Cauchy stresses of the stable neo-Hookean law.
+    def test_the_stress_of_a_uniform_strain(self):
+        try:
+            import meshio
+        except ImportError:
+            self.skipTest("meshio is not installed")
+        for poisson, pressure, axial in ((0, 127.78, -400.0), (0.3, 329.06, -538.46)):
+            self.run_sinew("run", DATA / "truth/uni.toml", "--set", f"b.poisson={poisson}",
+                           "--out", "o", "--force")
+            mesh = meshio.read(self.dir / "o/frames/uni_0001.vtu")
+            for of_tet in mesh.cell_data["pressure"][0]:
+                self.near(of_tet, pressure, 1e-4)
+            for of_tet in mesh.cell_data["stress"][0]:
+                self.near(of_tet[1], axial, 1e-4)
+                self.assertLess(max(map(abs, of_tet[3:])), 0.01)
+
+
 class Sheets(CaseTest):
     def test_a_free_plate_stays_as_it_is(self):
         s = self.summary("behaviour/sheet-free.toml")

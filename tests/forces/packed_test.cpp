@@ -243,6 +243,30 @@ TEST(PackedForces, AreTheSameBitsOnAnyNumberOfThreads) {
   EXPECT_EQ(on(1), on(2));
 }
 
+TEST(PackedForces, OfAVeryFlatTetAreNotResolved) {
+  const auto box_with_apex_at = [](double height) {
+    BodySpec spec;
+    spec.name = "box";
+    spec.mesh = box(Vec3(0.1, 0.1, 0.1), {2, 2, 2});
+    const Triangle top = {0, 1, 3};
+    const std::vector<Vec3>& x = spec.mesh.nodes;
+    const Vec3 normal =
+        (x[uz(top[1])] - x[uz(top[0])]).cross(x[uz(top[2])] - x[uz(top[0])]).normalized();
+    const Index apex = static_cast<Index>(x.size());
+    spec.mesh.nodes.push_back(x[0] + height * normal);
+    spec.mesh.tets.push_back({top[0], top[1], top[2], apex});
+    spec.mesh.tet_label.resize(spec.mesh.tets.size());
+    spec.materials = {Material()};
+    spec.regions = {"all"};
+    Model m;
+    add_body(m, spec);
+    finish(m);
+    return m;
+  };
+  EXPECT_TRUE(resolved_in_single(box_with_apex_at(1e-3)));
+  EXPECT_FALSE(resolved_in_single(box_with_apex_at(1e-8)));
+}
+
 TEST(PackedForces, AreTheSameBitsWithEveryInstructionSet) {
   for (const Law law : {Law::neo_hookean, Law::lloyd}) {
     const Model m = bar({material(law, 1e5, 0.45)}, 6);

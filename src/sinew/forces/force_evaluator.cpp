@@ -63,7 +63,7 @@ const TetState& PackedMaterial::tets(const Model& model, std::span<const Vec3> x
 namespace {
 
 std::variant<PlainMaterial, PackedMaterial> material_of(const Model& model, Precision precision) {
-  if (precision == Precision::single) return PackedMaterial(model);
+  if (precision == Precision::single && resolved_in_single(model)) return PackedMaterial(model);
   return PlainMaterial();
 }
 

@@ -62,7 +62,8 @@ class PackedMaterial {
 // earlier calls.
 class ForceEvaluator {
  public:
-  // The model must outlive the object.
+  // The model must outlive the object. Single precision is taken if it resolves the model
+  // (resolved_in_single()), else double.
   ForceEvaluator(const Model& model, Precision precision);
 
   // Springs, dashpots, network, volume, viscosity, gravity, drag, and all `Terms` at state.time.

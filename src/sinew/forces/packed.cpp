@@ -1,10 +1,12 @@
 #include "sinew/forces/packed.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <numeric>
 
 #include "sinew/base/flush_denormals.h"
 #include "sinew/forces/volume_law.h"
+#include "sinew/mesh/tet_mesh.h"
 
 namespace sinew {
 namespace {
@@ -30,7 +32,31 @@ void copy_four(const std::vector<float>& from, Index i, std::vector<float>& to, 
               to.begin() + 4 * static_cast<std::ptrdiff_t>(k));
 }
 
+// The smallest height of a tet [m].
+double lowest_height(const std::vector<Vec3>& x, const Tet& t) {
+  double widest = 0.0;
+  for (std::size_t a = 0; a < 4; ++a) {
+    const Vec3& x0 = x[uz(t[(a + 1) % 4])];
+    const Vec3 twice = (x[uz(t[(a + 2) % 4])] - x0).cross(x[uz(t[(a + 3) % 4])] - x0);
+    widest = std::max(widest, 0.5 * twice.norm());
+  }
+  return widest > 0.0 ? 3.0 * signed_volume(x, t) / widest : 0.0;
+}
+
 }  // namespace
+
+bool resolved_in_single(const Model& model) {
+  constexpr double flattest = 1e-5;
+  for (const Body& body : model.bodies) {
+    Eigen::AlignedBox3d box;
+    for (auto i = uz(body.nodes.begin); i < uz(body.nodes.end); ++i)
+      box.extend(model.rest_position[i]);
+    const double least = flattest * box.diagonal().norm();
+    for (auto t = uz(body.tets.begin); t < uz(body.tets.end); ++t)
+      if (lowest_height(model.rest_position, model.tets[t]) < least) return false;
+  }
+  return true;
+}
 
 void PackedForces::compute_frames(const Model& model, const State& state) {
   const auto& x = state.position;

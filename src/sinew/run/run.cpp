@@ -45,6 +45,20 @@ std::vector<fs::path> inputs_of(const Scene& scene) {
   return inputs;
 }
 
+// Throws if most of the energy comes from nothing: what follows is not the motion of the scene.
+void refuse_made_energy(const Energies& e, const RunState& run) {
+  constexpr double most = 0.5;      // of the largest entry of the account
+  constexpr double nothing = 1e-9;  // [J]
+  const double made = e.total() - run.start_energy;
+  if (!(made > std::max(nothing, most * e.largest_entry()))) return;
+  throw Error(ErrorKind::diverged,
+              fmt::format("{:.3g} J came from nothing by {:.6g} s: the steps do not resolve the "
+                          "motion",
+                          made, run.state.time),
+              "take a smaller safety or dt, precision = \"double\" or stepper = \"implicit\"; "
+              "allow_unstable = true runs it all the same");
+}
+
 // Runs a World from its current state to its end, and writes the results into a folder.
 class Runner {
  public:
@@ -160,6 +174,7 @@ class Runner {
     run_.peak_energy = std::max(run_.peak_energy, e.largest_entry());
     run_.peak_drift = std::max(run_.peak_drift, std::abs(e.total() - run_.start_energy));
     if (recorder_) recorder_->record(world_.controls(), run_, e, force(), world_.finder());
+    if (!world_.scene().allow_unstable) refuse_made_energy(e, run_);
   }
 
   // What the checkpoint counts on is on the disk before it.

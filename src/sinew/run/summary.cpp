@@ -8,6 +8,7 @@
 
 #include "sinew/base/hash.h"
 #include "sinew/contact/overlaps.h"
+#include "sinew/forces/packed.h"
 #include "sinew/forces/springs.h"
 #include "sinew/forces/strain_limits.h"
 #include "sinew/forces/volume.h"
@@ -105,7 +106,7 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   const bool may_be_single =
       run.stepper == StepperKind::verlet ||
       (run.stepper == StepperKind::implicit && may_take_single(model, scene.tolerance));
-  s.precision = may_be_single ? scene.precision : Precision::double_;
+  s.precision = may_be_single && resolved_in_single(model) ? scene.precision : Precision::double_;
   s.stepper_reason = run.stepper_reason;
   s.dt_auto = !scene.dt.has_value();
   s.dt = run.step > 0.0 ? run.step : run.target_step;
