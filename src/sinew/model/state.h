@@ -39,7 +39,7 @@ static_assert(sizeof(ContactForce) == sizeof(ContactId) + 4 * sizeof(Index) + 7 
 struct Reactions {
   std::vector<double> tension;   // of each limited spring [N] (as Model::limited), < 0: compression
   std::vector<double> pressure;  // of each limited cell [Pa] (cells), > 0: inwards
-  std::vector<ContactForce> contacts;  // those with a force, by id
+  std::vector<ContactForce> contacts;  // those with a force, and near ones of implicit steps; by id
 };
 
 struct State {

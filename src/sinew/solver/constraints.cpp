@@ -12,7 +12,7 @@
 namespace sinew {
 namespace {
 
-constexpr double ratio = 10.0;  // of a constraint's stiffness to the resistance of its nodes
+constexpr double ratio = 3.0;  // of a constraint's stiffness to the resistance of its nodes
 
 // The tolerance of a cell's volume, as a share of its rest volume (a tenth of its limit if that is
 // less).
@@ -110,6 +110,10 @@ double parallel_max(std::size_t n, const F& f) {
         return largest;
       },
       [](double a, double b) { return std::max(a, b); });
+}
+
+bool acts(const ContactForce& c) {
+  return !c.force.isZero(0.0);
 }
 
 }  // namespace
@@ -288,7 +292,7 @@ ConstraintError Constraints::update(const Controls& controls, const std::vector<
   });
   now_ = std::move(next);
   const ContactConstraints::Change contacts = contacts_.update(controls, x);
-  now_.contacts = contacts_.contact_forces();
+  now_.contacts = contacts_.contact_forces(x);
   return {std::max({springs, cells, contacts.distance}), contacts.friction,
           contacts.changed_contacts};
 }
@@ -300,12 +304,12 @@ void Constraints::store(State& state) const {
 }
 
 Index Constraints::contacts() const {
-  return static_cast<Index>(now_.contacts.size());
+  return static_cast<Index>(std::count_if(now_.contacts.begin(), now_.contacts.end(), acts));
 }
 
 bool any_active(const Reactions& reactions) {
   const auto active = [](double s) { return s != 0.0; };
-  return !reactions.contacts.empty() ||
+  return std::any_of(reactions.contacts.begin(), reactions.contacts.end(), acts) ||
          std::any_of(reactions.tension.begin(), reactions.tension.end(), active) ||
          std::any_of(reactions.pressure.begin(), reactions.pressure.end(), active);
 }

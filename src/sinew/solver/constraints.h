@@ -28,7 +28,7 @@ struct ConstraintError {
 // (minimise_augmented_lagrangian). The ground is a plane obstacle, so its contacts are among the
 // contacts.
 //
-// The stiffness k of a constraint on q is ten times the resistance of its single nodes,
+// The stiffness k of a constraint on q is three times the resistance of its single nodes,
 // 1 / sum_i (|dq/dx_i|^2 / D_i) with D_i the diagonal of M inertia + C rate + K. This bounds the
 // share of the error that a pass leaves, and does not worsen the condition of the tangent.
 class Constraints {

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
+#include "sinew/contact/narrow_phase.h"
 #include "sinew/model/mean_edge.h"
 #include "sinew/solver/bound.h"
 
@@ -13,9 +15,46 @@ namespace {
 // shares of the mean edge. Planes are included at any distance: see ContactReach.
 constexpr double depth_tolerance = 1e-4;
 constexpr double reach_share = 0.05;
+// The slip by which the friction forces may be off, as a share of the depth tolerance.
+constexpr double slip_tolerance = 0.05;
+// A node that leaves the footprint of its triangle sideways by less than this share of the local
+// size stays in contact with it.
+constexpr double slack_share = 0.05;
+
 template <typename F>
 void for_each_node(const Contact& c, const F& f) {
   for (std::size_t a = 0; a < static_cast<std::size_t>(c.count); ++a) f(uz(c.node[a]), c.weight[a]);
+}
+
+// The contact of a node with the triangle that it touched in the step before, if the node has
+// neither risen above `reach` nor left the footprint of the triangle by more than the slack. Nodes
+// on the rims of flush bodies do the latter by a little and back in every step, and a contact that
+// comes and goes lets them sink in between.
+std::optional<Contact> persisting_contact(const Model& model, const ContactId& id,
+                                          const std::vector<Vec3>& x, double reach) {
+  if (id.kind != ContactKind::node_triangle) return std::nullopt;
+  const ContactSurface& surface = model.surface;
+  const Triangle& t = surface.triangles[uz(id.partner)];
+  const Plane plane = plane_of(x, t);
+  if (!(plane.length > 0.0)) return std::nullopt;
+  Contact c;
+  c.node = {surface.nodes[uz(id.feature)], t[0], t[1], t[2]};
+  const OnTriangle on =
+      nearest_on_triangle(x[uz(c.node[0])], x[uz(t[0])], x[uz(t[1])], x[uz(t[2])]);
+  c.weight = {1.0, -on.weight[0], -on.weight[1], -on.weight[2]};
+  c.count = 4;
+  c.normal = plane.normal;
+  c.gap = contact_gap(c, x);
+  c.time_of_impact = 0.0;
+  c.friction = model.body_contact->friction;
+  c.restitution = model.body_contact->restitution;
+  c.id = id;
+  const double size =
+      std::min(surface.node_size[uz(id.feature)], surface.triangle_size[uz(id.partner)]);
+  const double sideways = (contact_offset(c, x) - c.gap * c.normal).norm();
+  const bool stays =
+      sideways <= slack_share * size && c.gap <= reach && c.gap >= -NarrowPhase::depth_share * size;
+  return stays ? std::optional(c) : std::nullopt;
 }
 
 }  // namespace
@@ -37,6 +76,7 @@ void ContactConstraints::start(const Controls& controls, const State& state,
   if (empty()) return;
   hardness_ = 1.0;
   passes_ = 0;
+  friction_before_ = no_limit;
   from_ = from;
   now_ = state.time;
   before_ = state.time - step;
@@ -80,6 +120,7 @@ void ContactConstraints::find(const Controls& controls, const std::vector<Vec3>&
         constraints_.begin(), constraints_.end(), id,
         [](const Constraint& h, const ContactId& i) { return h.contact.id < i; });
   };
+  add_persisting(x);
   for (const Contact& c : found_) {
     next.push_back(constraint_of(c));
     const auto same = place(c.id);
@@ -109,6 +150,22 @@ void ContactConstraints::find(const Controls& controls, const std::vector<Vec3>&
     h.force += normal * n;
   }
   constraints_ = std::move(next);
+}
+
+// Adds the contacts of the step before whose feature has lost its owner, if they persist.
+void ContactConstraints::add_persisting(const std::vector<Vec3>& x) {
+  const auto old = std::ssize(found_);
+  for (const Constraint& h : constraints_) {
+    const ContactId& id = h.contact.id;
+    const auto place =
+        std::lower_bound(found_.begin(), found_.begin() + old, id,
+                         [](const Contact& c, const ContactId& i) { return c.id < i; });
+    const bool found = (place != found_.begin() + old && place->id.same_feature(id)) ||
+                       (place != found_.begin() && std::prev(place)->id.same_feature(id));
+    if (found) continue;
+    if (const auto c = persisting_contact(model_, id, x, reach_)) found_.push_back(*c);
+  }
+  std::sort(found_.begin(), found_.end(), comes_before);
 }
 
 // Adds only the pairs that are not contacts yet; the others do not change.
@@ -208,18 +265,35 @@ ContactConstraints::Change ContactConstraints::update(const Controls& controls,
   };
   double bounds = 0.0;
   double bound_change = 0.0;
+  double slip_change = 0.0;  // as multiples of the tolerance
   for (Constraint& h : constraints_) {
     const Vec3 p = force_at(h, x);
     change.distance = std::max(change.distance, error(h, p - h.force));
     h.force = p;
     const double bound = h.contact.friction * h.contact.normal.dot(p);
-    bound_change += std::abs(bound - h.friction_bound);
+    // What the change of the bound does to the tangential force: nothing while the contact sticks
+    // under both.
+    const double tangential = (p - h.contact.normal.dot(p) * h.contact.normal).norm();
+    const double effect = tangential < (1.0 - 1e-6) * h.friction_bound
+                              ? std::max(0.0, tangential - bound)
+                              : std::abs(bound - h.friction_bound);
+    bound_change += effect;
+    if (h.stiffness > 0.0)
+      slip_change = std::max(slip_change, effect / (hardness_ * h.stiffness * tolerance_));
     bounds += bound;
-    // For contacts that stay: the mean does not oscillate.
-    h.friction_bound = 0.5 * (h.friction_bound + bound);
   }
   if (bound_change > 0.0) {
     change.friction = bounds > 0.0 ? bound_change / (friction_tolerance * bounds) : no_limit;
+    // Redundant contacts pass their forces to each other for ever, which moves nothing.
+    change.friction = std::min(change.friction, slip_change / slip_tolerance);
+  }
+  // The bounds of the next pass. Where the fixed point oscillates, their mean does not.
+  const double share =
+      change.friction > 10.0 && change.friction < 0.9 * friction_before_ ? 1.0 : 0.5;
+  friction_before_ = change.friction;
+  for (Constraint& h : constraints_) {
+    const double bound = h.contact.friction * h.contact.normal.dot(h.force);
+    h.friction_bound += share * (bound - h.friction_bound);
   }
   // New contacts act at other places, or are too deep and have no force yet.
   std::vector<Vec3> difference(x.size(), Vec3::Zero());
@@ -247,10 +321,12 @@ ContactConstraints::Change ContactConstraints::update(const Controls& controls,
   return change;
 }
 
-std::vector<ContactForce> ContactConstraints::contact_forces() const {
+std::vector<ContactForce> ContactConstraints::contact_forces(const std::vector<Vec3>& x) const {
   std::vector<ContactForce> out;
   for (const Constraint& h : constraints_) {
-    if (h.force.isZero(0.0)) continue;
+    const bool may_persist =
+        h.contact.id.kind == ContactKind::node_triangle && contact_gap(h.contact, x) <= reach_;
+    if (h.force.isZero(0.0) && !may_persist) continue;
     const Contact& c = h.contact;
     out.push_back({c.id, c.node, c.weight, h.force});
   }

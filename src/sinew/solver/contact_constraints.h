@@ -57,7 +57,8 @@ class ContactConstraints {
   Change update(const Controls& controls, const std::vector<Vec3>& x);
   void harden(double factor) { hardness_ *= factor; }
 
-  std::vector<ContactForce> contact_forces() const;          // the contacts with a force
+  // The contacts with a force, and those without that may persist in the next step.
+  std::vector<ContactForce> contact_forces(const std::vector<Vec3>& x) const;
   double deepest(const std::vector<Vec3>& x) const;          // [m]
   void add_obstacle_forces(std::vector<Vec3>& force) const;  // of the bodies on obstacles [N]
   // Work of the contact forces on the motion of the obstacles' surfaces, and against the slip [J].
@@ -73,6 +74,7 @@ class ContactConstraints {
     Vec3 start = Vec3::Zero();    // contact_offset, also the anchor, at the start of the step [m]
   };
   void find(const Controls& controls, const std::vector<Vec3>& x);
+  void add_persisting(const std::vector<Vec3>& x);
   void add_new();
   Constraint constraint_of(const Contact& c) const;
   Vec3 slip(const Constraint& h, const std::vector<Vec3>& x) const;
@@ -85,6 +87,7 @@ class ContactConstraints {
   double reach_ = 0.0;      // [m]
   double hardness_ = 1.0;
   int passes_ = 0;                  // since start()
+  double friction_before_ = 0.0;    // Change::friction of the pass before
   std::vector<double> compliance_;  // [m/N] (nodes)
   std::unique_ptr<ContactFinder> finder_;
   const std::vector<Vec3>* from_ = nullptr;
