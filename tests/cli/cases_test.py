@@ -4,6 +4,7 @@ The right values come from formulas, from quadratic tetrahedra with the same ene
 from conservation laws. The bounds are what the meshes of these scenes reach.
 """
 
+import csv
 import json
 import math
 import unittest
@@ -131,7 +132,17 @@ class Impacts(CaseTest):
         result = self.run_sinew("run", DATA / "truth/swing.toml", "--no-output", code=UNSTABLE)
         self.assertIn("dt", result.stderr)
 
-    def test_friction_only_makes_heat(self):
+    def test_heat_only_grows(self):
+        for scene, settings in (("grasp", []), ("bounce", []), ("plush", ["plush.young=20000"]),
+                                ("static-stack", ["stepper=\"verlet\"", "duration=0.5"]),
+                                ("static-stack", ["stepper=\"implicit\"", "duration=0.5"])):
+            sets = [word for setting in settings for word in ("--set", setting)]
+            self.run_sinew("run", DATA / f"behaviour/{scene}.toml", "--out", "o", "--force",
+                           "--set", "output.vtu=false", *sets)
+            with open(self.dir / "o/energy.csv", encoding="utf-8") as file:
+                heat = [float(row["dissipated [J]"]) for row in csv.DictReader(file)]
+            for before, after in zip(heat, heat[1:]):
+                self.assertGreaterEqual(after, before - 1e-12, scene)
         s = self.summary("behaviour/grasp.toml")
         self.assertGreater(s["friction_work"], 0.0)
         self.assertGreaterEqual(s["energy"]["dissipated"], s["friction_work"])

@@ -144,17 +144,19 @@ std::string account_warning(const RunCounters& c) {
 std::string crushed_warning(const Model& model, const std::vector<Vec3>& x) {
   constexpr double many = 0.05;
   for (const Body& body : model.bodies) {
-    std::size_t crushed = 0;
+    std::size_t crushed = 0, inverted = 0;
     for (auto t = uz(body.tets.begin); t < uz(body.tets.end); ++t) {
       const double ratio = signed_volume(x, model.tets[t]) / model.rest_volume[t];
       if (ratio < guard_threshold) ++crushed;
+      if (ratio < 0.0) ++inverted;
     }
-    if (static_cast<double>(crushed) <= many * static_cast<double>(body.tets.size())) continue;
+    const auto tets = static_cast<double>(body.tets.size());
+    if (inverted == 0 && static_cast<double>(crushed) <= many * tets) continue;
     return fmt::format(
-        "body '{}' is crushed: {} of its {} tets have less than {:.0f} % of their volume, where "
-        "only the guard against inversion holds them and no material law is right; take smaller "
-        "loads, a stiffer material or a finer mesh",
-        body.name, crushed, body.tets.size(), 100.0 * guard_threshold);
+        "body '{}' is crushed: {} of its {} tets have less than {:.0f} % of their volume, {} of "
+        "them are inside out; there only the guard against inversion holds them, and no material "
+        "law is right. Take smaller loads, a stiffer material or a finer mesh",
+        body.name, crushed, body.tets.size(), 100.0 * guard_threshold, inverted);
   }
   return {};
 }

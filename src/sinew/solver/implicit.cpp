@@ -238,10 +238,12 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
   Field reaction(x.size(), Vec3::Zero());
   constraints_->add_reactions(state.position, forces_.tets(state.position), reaction);
   keep_free(model_, reaction);
-  state.energy.dissipated -= 0.5 * h * (dot(reaction, v) + dot(reaction, state.half_velocity));
+  const double gained = 0.5 * h * (dot(reaction, v) + dot(reaction, state.half_velocity));
   const double moved = constraints_->contact_constraints().work_of_obstacles();
-  state.energy.work_in += moved;
-  state.energy.dissipated += moved;
+  // Reactions that lead nodes back to their bounds put work in, so that heat only grows.
+  const double put_in = std::max(moved, gained);
+  state.energy.work_in += put_in;
+  state.energy.dissipated += put_in - gained;
   report.friction += constraints_->contact_constraints().work_of_friction(state.position);
   return true;
 }

@@ -26,6 +26,7 @@ constexpr double turn_per_load_step = 20.0 * 3.14159265358979 / 180.0;  // [rad]
 constexpr double soft_volume = 30.0;
 constexpr int cuts_before_falling = 2;       // then dynamic relaxation is tried, once
 constexpr double shortest_load_step = 0.02;  // of the change of the loads
+constexpr double share_of_steps = 0.3;  // of StaticOptions::most_work; dynamic relaxation takes all
 
 // The largest rotation angle [rad] of a pin between two times.
 double pins_turn(const Controls& controls, double from, double to) {
@@ -133,6 +134,7 @@ struct Resting {
 struct Support {
   std::vector<Resting> on_planes;
   bool by_contact = false;
+  bool none = false;  // of some body, which nothing pushes
 };
 Support find_support(const Model& model, const Controls& controls, double time,
                      const Field& force) {
@@ -164,6 +166,7 @@ Support find_support(const Model& model, const Controls& controls, double time,
     });
     const bool pushed = net[g].norm() > 1e-6 * size[g];
     out.by_contact = out.by_contact || (pushed && may_touch);
+    out.none = out.none || !pushed;
     if (lacks.norm() > 1e-6 * size[g]) {
       out.by_contact = out.by_contact || obstacles;
       if (out.by_contact) continue;
@@ -193,6 +196,18 @@ void put_down(const Model& model, const Controls& controls, const std::vector<Re
     for_each([&](const Vec3& x) { low = std::min(low, r.plane.height(x)); });
     for_each([&](Vec3& x) { x -= low * r.plane.normal; });
   }
+}
+
+// The stiffness per mass that holds a body that nothing pushes in its place [1/s2]: see
+// StaticSolver::settle. It is far below the lowest of the material.
+double free_stiffness(const Model& model) {
+  double volume = 0.0, mass = 0.0, modulus = 0.0;
+  for (std::size_t t = 0; t < model.tets.size(); ++t) {
+    volume += model.rest_volume[t];
+    modulus += model.rest_volume[t] * model.tet_modulus[t];
+  }
+  for (const double m : model.mass) mass += m;
+  return mass > 0.0 ? 1e-4 * modulus / (std::cbrt(volume) * std::cbrt(volume) * mass) : 0.0;
 }
 
 // The stiffness per mass that holds a body on a plane in its place [1/s2]: see
@@ -264,10 +279,10 @@ int StaticSolver::solve_tangent(const Configuration& at, const Field& rhs, doubl
   return products;
 }
 
-// Minimises. Nothing holds a body that rests on a plane along the plane and about its normal. A
-// weak spring from every node to its start position holds it, sigma m / 2 |x - x_start|^2. The
-// start positions move with the body until the springs carry nothing (the proximal point method,
-// Rockafellar 1976).
+// Minimises. Nothing holds a body that rests on a plane along the plane and about its normal, and
+// nothing at all a free one. A weak spring from every node to its start position holds it, sigma m
+// / 2 |x - x_start|^2. The start positions move with the body until the springs carry nothing (the
+// proximal point method, Rockafellar 1976).
 NewtonReport StaticSolver::settle(Objective objective, const NewtonOptions& options,
                                   ForceEvaluator& forces, State& state) {
   constraints_.start(objective.controls, state, nullptr, 0.0);
@@ -371,7 +386,8 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
       find_support(model_, controls, time, outer_forces(model_, controls, state));
   const std::vector<Resting> resting =
       support.by_contact ? std::vector<Resting>{} : support.on_planes;
-  proximal_stiffness_ = resting.empty() ? 0.0 : proximal_stiffness(model_, controls);
+  proximal_stiffness_ = std::max(resting.empty() ? 0.0 : proximal_stiffness(model_, controls),
+                                 support.none ? free_stiffness(model_) : 0.0);
   put_at_rest_shape(model_, find_tangled(model_, find_low_tets(model_, state.position)), state);
 
   if (support.by_contact) {
@@ -435,7 +451,7 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
     if (failures++ == 0) products_before = report.products;
     const double work = static_cast<double>(report.products - falls.products - products_before) *
                         static_cast<double>(model_.node_count());
-    if (failed - done < shortest_load_step || work > options.most_work ||
+    if (failed - done < shortest_load_step || work > share_of_steps * options.most_work ||
         report.newton - falls.newton > options.most_newton) {
       throw_no_rest(controls, time, options, start, report);
     }

@@ -26,7 +26,7 @@ struct StaticOptions {
   double tolerance = 1e-6;  // residual to reach [-]
   int max_newton = 100;     // Newton steps within a load step before it is cut in half
   int most_newton = 500;    // in total; no load step is repeated after them
-  // In total, after the first failure: Hessian products times nodes. About 6 s.
+  // In total, after the first failure: Hessian products times nodes. About 7 s.
   double most_work = 5e7;
   bool finds_limit_load = true;  // where there is no rest state, for the message
   int min_load_steps = 1;        // pins that rotate far take more load steps (one per 20 degrees)
@@ -85,7 +85,7 @@ class StaticSolver {
 
   const Model& model_;
   ForceEvaluator forces_;
-  double proximal_stiffness_ = 0.0;  // see settle() [1/s2]; 0 if no body rests on a plane alone
+  double proximal_stiffness_ = 0.0;  // see settle() [1/s2]; 0 if every body is held
   LinearSolver linear_;
   Constraints constraints_;
   Index contacts_at_rest_ = 0;  // of rest_by_contact()
