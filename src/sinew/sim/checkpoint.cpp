@@ -1,5 +1,7 @@
 #include "sinew/sim/checkpoint.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <string>
 #include <string_view>
@@ -12,7 +14,7 @@
 namespace sinew {
 namespace {
 
-constexpr std::string_view magic = "SINEWCP8";
+constexpr std::string_view magic = "SINEWCP9";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>
@@ -55,6 +57,31 @@ void visit(Archive& a, Run& r) {
   throw Error(ErrorKind::input, why, remedy, Location{name});
 }
 
+bool finite(const std::vector<Vec3>& all) {
+  return std::all_of(all.begin(), all.end(), [](const Vec3& v) { return v.allFinite(); });
+}
+
+// Whether the run belongs to a model of so many nodes: a file with a right hash can still be made
+// by hand.
+bool fits(const RunState& run, std::size_t nodes) {
+  const State& s = run.state;
+  const auto on_nodes = [&](const ContactForce& c) {
+    return c.force.allFinite() &&
+           std::all_of(c.node.begin(), c.node.begin() + static_cast<std::ptrdiff_t>(c.count()),
+                       [&](Index i) { return i >= 0 && uz(i) < nodes; });
+  };
+  const std::size_t mode = run.memory.stiff_mode.size();
+  return s.position.size() == nodes && s.half_velocity.size() == nodes && finite(s.position) &&
+         finite(s.half_velocity) && std::isfinite(s.last_step) && std::isfinite(s.time) &&
+         s.step >= 0 &&
+         std::all_of(s.reactions.contacts.begin(), s.reactions.contacts.end(), on_nodes) &&
+         finite(s.obstacle_force) && (mode == 0 || mode == nodes) &&
+         finite(run.memory.stiff_mode) && run.stepper >= StepperKind::automatic &&
+         run.stepper <= StepperKind::rest && run.frame >= 0 && run.steps_left >= 0 &&
+         std::isfinite(run.step) && run.step >= 0.0 && std::isfinite(run.target_step) &&
+         run.target_step >= 0.0;
+}
+
 }  // namespace
 
 std::string encode_run(std::uint64_t model_hash, const RunState& run) {
@@ -86,8 +113,7 @@ RunState decode_run(std::string_view bytes, const std::string& name, std::uint64
   }
   RunState run;
   visit(r, run);
-  if (!r.all_read() || run.state.position.size() != nodes ||
-      run.state.half_velocity.size() != nodes) {
+  if (!r.all_read() || !fits(run, nodes)) {
     reject(name, "the checkpoint is damaged", "start the run again");
   }
   return run;

@@ -85,7 +85,7 @@ void add_work_of_obstacles(const Model& model, const Controls& controls, double 
 void follow_positions(const Model& model, const std::vector<Vec3>& force,
                       const std::vector<Vec3>& predicted, double h, State& state) {
   const double mean_step = 0.5 * (state.last_step + h);
-  state.energy.dissipated -= parallel_sum(model.node_count(), [&](Index i) {
+  const double gained = parallel_sum(model.node_count(), [&](Index i) {
     const auto k = uz(i);
     if (model.inverse_mass[k] == 0.0) return 0.0;
     const Vec3 change = (state.position[k] - predicted[k]) / h;
@@ -93,6 +93,9 @@ void follow_positions(const Model& model, const std::vector<Vec3>& force,
     state.half_velocity[k] += change;
     return 0.5 * model.mass[k] * change.dot(before + state.half_velocity[k]);
   });
+  // Limits that pull, as when a pin moves or a step starts beyond them, put work in.
+  state.energy.work_in += std::max(0.0, gained);
+  state.energy.dissipated += std::max(0.0, -gained);
 }
 
 // Projects the limits, with hard planes as additional constraints; velocities follow.
