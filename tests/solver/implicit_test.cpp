@@ -256,6 +256,25 @@ TEST(Implicit, LooseStepsMayTakeForcesInSinglePrecision) {
   }
 }
 
+TEST(Implicit, AStoppedStepIsNotTaken) {
+  Model m = tissue_box(Material{}, {3, 3, 3});
+  m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};
+  finish(m);
+  for (const Scheme scheme : {Scheme::tr_bdf2, Scheme::sdirk2, Scheme::backward_euler}) {
+    State s = run(m, 0.01, 2, {.scheme = scheme});
+    const State before = s;
+    const std::atomic<bool> stop = true;
+    ImplicitStepper stepper(m);
+    const StepReport report =
+        stepper.step(0.01, initial_controls(m), {.scheme = scheme, .stop = &stop}, s);
+    EXPECT_TRUE(report.stopped);
+    EXPECT_EQ(s.position, before.position);
+    EXPECT_EQ(s.half_velocity, before.half_velocity);
+    EXPECT_EQ(s.time, before.time);
+    EXPECT_EQ(s.step, before.step);
+  }
+}
+
 TEST(Implicit, SameBitsAtAnyThreadCount) {
   Model m = tissue_box(Material{}, {6, 6, 6});
   m.pins = {{"top", test::nodes_at(m, 1, 0.05), {}}};

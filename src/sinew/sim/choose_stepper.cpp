@@ -81,7 +81,8 @@ class Policy {
     const double h = options_.first_length(choice.first);
     try {
       for (int i = 0; i < trial_steps; ++i) {
-        const StepReport report = choice.stepper->step(h, controls_, {}, state, memory);
+        const StepReport report =
+            choice.stepper->step(h, controls_, {.trial = true}, state, memory);
         trial.newton += report.newton;
         trial.products += report.products;
       }

@@ -18,8 +18,6 @@ namespace {
 
 constexpr double single_tolerance = 1e-3;
 
-constexpr int most_step_cuts = 10;
-
 // d / h, the length of a stage: g / 2 of TR-BDF2 is the same number as g of SDIRK2.
 const double stage_share = 1.0 - std::sqrt(0.5);
 
@@ -120,7 +118,7 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
       model_,    controls, nullptr, 0.0,     inertia,
       &inertial, 1.0 / h,  &from,   &lagged, constraints_->empty() ? nullptr : constraints_.get()};
   const NewtonOptions newton_options{
-      options.tolerance, options.max_newton, nullptr, {}, options.deadline};
+      options.tolerance, options.max_newton, options.stop, {}, options.deadline};
   ForceEvaluator& forces = evaluator(options);
   move_pins(model_, controls, state);
   const Field start = state.position;
@@ -136,13 +134,16 @@ std::optional<Field> ImplicitStepper::solve(const Field& from, const Field& velo
       minimise_augmented_lagrangian(objective, linear_, newton_options, forces, state);
   report.newton += newton.newton;
   report.products += newton.products;
-  if (!newton.rests && !options.deadline) {  // starts again from the old positions
+  if (!newton.rests && !newton.stopped &&
+      !options.deadline) {  // starts again from the old positions
     state.position = start;
     constraints_->start(controls, state, &path, path_time);
     newton = minimise_augmented_lagrangian(objective, linear_, newton_options, forces_, state);
     report.newton += newton.newton;
     report.products += newton.products;
   }
+  report.stopped = newton.stopped && !newton.rests;
+  if (report.stopped) return std::nullopt;
   report.residual = std::max(report.residual, newton.residual);
   report.ran_out = report.ran_out || newton.ran_out;
   report.contacts = constraints_->contacts();
@@ -288,14 +289,18 @@ StepReport ImplicitStepper::advance(double h, const Controls& controls,
       ++done;
       continue;
     }
+    if (report.stopped) {
+      state = start;
+      return report;
+    }
     state = before;  // the report keeps the cost of the attempt, but not its residual
     report.residual = residual;
-    if (++cuts > most_step_cuts) {
+    if (++cuts > options.most_cuts) {
       throw Error(
           ErrorKind::diverged,
           fmt::format("the implicit step from t = {:.6g} s was cut {} times and still found "
                       "no equilibrium of forces",
-                      start.time, most_step_cuts),
+                      start.time, options.most_cuts),
           "take a smaller dt, a larger tolerance, or slower pins and loads");
     }
     ++report.cuts;

@@ -1,6 +1,7 @@
 // Implicit steps: stable for any step length. docs/methods/implicit.md.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,7 +20,9 @@ struct ImplicitOptions {
   double tolerance = 1e-6;  // see NewtonReport::residual
   int max_newton = 50;      // Newton steps before the step is cut in half
   bool single = false;      // forces in single precision if may_take_single()
+  int most_cuts = 10;       // times that a step is cut in half before it is given up
   Deadline deadline = {};   // then the current iterate becomes the step, whatever its residual
+  const std::atomic<bool>* stop = nullptr;  // true: the step is not taken, StepReport::stopped
 };
 
 // Whether steps with this tolerance may use forces in single precision: the tolerance is coarse

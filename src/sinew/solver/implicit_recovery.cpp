@@ -46,6 +46,7 @@ StepReport ImplicitStepper::recover(std::span<const Index> tangled, double h,
     return measure_energies(model_, controls, s, forces_.evaluate(controls, s).force).total();
   };
   const double energy = energy_at(state);
+  const State start = state;
   State moved = state;
   Recovered recovered;
   for (int n = 0; n < most_recovery_steps; ++n) {
@@ -76,6 +77,10 @@ StepReport ImplicitStepper::recover(std::span<const Index> tangled, double h,
   }
   state.reactions = {};
   StepReport report = ImplicitStepper(others).advance(h, controls, options, state);
+  if (report.stopped) {
+    state = start;
+    return report;
+  }
   report.recovered = 1;
   for (std::size_t i = 0; i < state.position.size(); ++i) {
     if (model_.inverse_mass[i] > others.inverse_mass[i]) {

@@ -25,6 +25,8 @@ class ImplicitSteps : public Stepper {
   StepReport step(double h, const Controls& controls, const Interrupt& interrupt, State& state,
                   StepMemory&) override {
     options_.deadline = interrupt.deadline;
+    options_.stop = interrupt.stop;
+    options_.most_cuts = interrupt.trial ? 2 : ImplicitOptions().most_cuts;
     return stepper_.step(h, controls, options_, state);
   }
 

@@ -50,7 +50,7 @@ void LinearSolver::assemble(const Objective& objective, const Field& x, double t
 }
 
 int LinearSolver::solve(const Field& r, double forcing, int most, const Deadline& deadline,
-                        Field& p) {
+                        Field& p, const std::atomic<bool>* stop) {
   const auto nodes = static_cast<Index>(r.size());
   const double size = std::sqrt(dot(r, r));
   p.assign(r.size(), Vec3::Zero());
@@ -76,6 +76,7 @@ int LinearSolver::solve(const Field& r, double forcing, int most, const Deadline
       return static_cast<double>(r_[uz(i)].dot(r_[uz(i)]));
     });
     if (!(std::sqrt(left) > forcing) || passed(deadline)) break;
+    if (stop != nullptr && stop->load()) break;
     const double next = preconditioner_.apply(matrix_, r_, z_);
     const auto beta = static_cast<float>(next / rz);
     rz = next;

@@ -2,6 +2,7 @@
 // preconditioner. docs/methods/linear-solver.md.
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "sinew/solver/newton.h"
@@ -23,10 +24,11 @@ class LinearSolver {
   void assemble(const Objective& objective, const Field& x, double time, const TetState& tets);
 
   // An approximate solution p of K p = r, 0 on nodes with prescribed motion. Stops at |K p - r| <=
-  // forcing |r|, after `most` products, after the product during which the deadline passes, or if K
-  // is not positive. In the last cases p is the best solution so far; r . p > 0 always holds
-  // (Steihaug 1983). Returns the number of products.
-  int solve(const Field& r, double forcing, int most, const Deadline& deadline, Field& p);
+  // forcing |r|, after `most` products, after the product during which the deadline passes or
+  // `stop` is set, or if K is not positive. In the last cases p is the best solution so far; r . p
+  // > 0 always holds (Steihaug 1983). Returns the number of products.
+  int solve(const Field& r, double forcing, int most, const Deadline& deadline, Field& p,
+            const std::atomic<bool>* stop = nullptr);
 
   // The scale of the tets' forces and of their resistance, as sums over the tets of (mu V^(2/3))^2
   // [N2] and of (mu V^(1/3))^2 [N2/m2].

@@ -233,8 +233,10 @@ NewtonReport newton_steps(const Objective& objective, LinearSolver& linear,
     if (report.ran_out) return report;
     const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.3);
     linear.assemble(objective, state.position, state.time, forces.tets(state.position));
-    report.products += linear.solve(f.free, forcing, most_products, deadline, p);
+    report.products += linear.solve(f.free, forcing, most_products, deadline, p, options.stop);
     ++report.newton;
+    report.stopped = options.stop != nullptr && options.stop->load();
+    if (report.stopped) return report;
     if (!line_search(objective, p, options.deadline.has_value(), forces, f, state)) return report;
   }
 }

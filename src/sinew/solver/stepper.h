@@ -21,8 +21,11 @@ namespace sinew {
 
 // Conditions that end a step early.
 struct Interrupt {
-  Deadline deadline = {};                   // implicit steps: the current iterate becomes the step
-  const std::atomic<bool>* stop = nullptr;  // rest states: ends after the current Newton step
+  Deadline deadline = {};  // implicit steps: the current iterate becomes the step
+  // Ends a step within a product of the Newton step that it is at: a rest state keeps the best
+  // positions so far, an implicit step is not taken. Explicit steps are short.
+  const std::atomic<bool>* stop = nullptr;
+  bool trial = false;  // an implicit step is given up after two cuts
 };
 
 // The data that a stepper keeps between steps in addition to the State. A checkpoint holds them.
