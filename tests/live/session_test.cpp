@@ -41,6 +41,26 @@ TEST(Live, FramesOfASixtiethOfASecondAndTheirNumbers) {
   EXPECT_EQ(first.value.size(), s.topology()->node.size());
 }
 
+TEST(Live, ACancelledStepIsNotTaken) {
+  Scene scene = test::hanging_box();
+  scene.stepper = StepperKind::implicit;
+  scene.names_steps = true;
+  Session s(scene);
+  s.apply(Play{});
+  frames(s, 2);
+  const State before = s.state();
+  s.cancel();
+  EXPECT_FALSE(s.advance(never));
+  s.apply(Advance{.frame = true});
+  EXPECT_EQ(s.state().hash(), before.hash());
+  s.apply(Cancel{});
+  EXPECT_FALSE(s.running());
+  EXPECT_NE(s.status().error.find("cancelled"), std::string::npos);
+  s.apply(Play{});
+  frames(s, 1);
+  EXPECT_GT(s.time(), before.time);
+}
+
 TEST(Live, TheSurfaceIsThatOfTheBoxWithItsPins) {
   const Session s(test::hanging_box());
   const Topology& t = *s.topology();

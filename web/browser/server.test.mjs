@@ -1,7 +1,10 @@
 // What the page does when the server goes and comes; how fast frames and hands are.
 import assert from "node:assert/strict";
+import { mkdtempSync, rmSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join, relative } from "node:path";
 import { after, before, test } from "node:test";
-import { launch, serve, state, until, visit } from "./support.mjs";
+import { launch, pictures, root, serve, state, until, visit } from "./support.mjs";
 
 let browser;
 before(async () => {
@@ -38,6 +41,36 @@ test("other machines need the token", async () => {
   } finally {
     await server.stop();
   }
+});
+
+test("a step that takes long is said, and can be cancelled", { timeout: 180_000 }, async () => {
+  const folder = mkdtempSync(join(tmpdir(), "sinew-busy-"));
+  const scene = join(folder, "block.toml");
+  writeFileSync(scene, `stepper = "implicit"
+[body.block]
+shape = "box"
+size = [0.1, 0.1, 0.1]
+cells = [24, 24, 24]
+young = 1e4
+poisson = 0.49
+[pin.top]
+select = { side = "+y" }
+`);
+  const server = await serve(relative(root, scene));
+  after(() => server.stop());
+  await visit(browser, server.url, {}, async (page) => {
+    await until(page, () => window.sinew.state.controls);
+    await page.keyboard.press("Space");
+    await page.waitForSelector("#busy:not([hidden])", { timeout: 60_000 });
+    await page.screenshot({ path: join(pictures, "busy.png") });
+    assert.match(await page.textContent("#busy"), /A step has taken \d+ s so far/);
+    await page.click("#cancel-step");
+    await until(page, () => window.sinew.state.status.running === false);
+    await until(page, () => document.querySelector("#busy").hidden);
+    assert.match(await page.textContent("#alert"), /cancelled/);
+  });
+  await server.stop();
+  rmSync(folder, { recursive: true });
 });
 
 // Without drawing: a bare page of the same origin that only counts.

@@ -1,6 +1,7 @@
 // The page of sinew view: assembles its parts. docs/view.md describes it.
 import * as THREE from "three";
 import { Around } from "./around";
+import { Busy } from "./busy";
 import { ColorBar, ScaleBar } from "./colorbar";
 import { CompareControl } from "./compare";
 import { Connection } from "./connection";
@@ -57,6 +58,7 @@ class App {
   private readonly role = h("button", { type: "button", class: "text", id: "take-control" }, "Take the controls");
   private readonly lost = h("div", { id: "lost", role: "status" }, "Connecting …");
   private readonly play = iconButton("play", "Run", "Space", () => this.togglePlay());
+  private readonly busy = new Busy(() => this.send({ type: "cancel" }));
   private errorsSeen = -1;
 
   constructor() {
@@ -74,7 +76,10 @@ class App {
         this.world.build(t);
         this.cut.setBox(this.world.box);
       },
-      frame: (f) => (this.frame = f),
+      frame: (f) => {
+        this.busy.heard();
+        this.frame = f;
+      },
       connected: (is) => this.setConnected(is),
       fault: (m) => this.complain(m),
     });
@@ -143,19 +148,22 @@ class App {
       h("header", {}, h("div", { class: "heading" }, this.title, this.lookFor, this.bar.element), corner),
       this.panel.element, this.options.element, this.scale.element,
       h("footer", {}, this.around.hint.element, this.limit, this.tools.card, transport),
-      this.lost, this.help.element, ...this.around.elements);
+      this.lost, this.busy.element, this.help.element, ...this.around.elements);
     this.role.hidden = true;
+    this.busy.element.hidden = true;
     if (innerWidth < NARROW) document.body.classList.add("no-panel", "no-options");
   }
 
   private send(command: Command): boolean {
     if (!this.controls && command.type !== "control" && command.type !== "seen") return false;
+    if (command.type === "step" || command.type === "reset" || command.type === "stepping") this.busy.expect();
     return this.connection.send(command);
   }
 
   // ---- messages of the server ----
 
   private hear(message: Text): void {
+    this.busy.heard();
     this.around.hear(message, performance.now());
     switch (message.type) {
       case "hello":
@@ -211,6 +219,7 @@ class App {
 
   private setConnected(is: boolean): void {
     this.lost.hidden = is;
+    this.busy.heard();
     if (is) return;
     this.lost.textContent = this.scene ? "Connection lost – trying again …" : "Connecting …";
     this.setControls(false);
@@ -302,6 +311,7 @@ class App {
 
   private draw(now: number): void {
     requestAnimationFrame((then) => this.draw(then));
+    this.busy.update(this.status?.running ?? false, this.controls);
     const frame = this.frame;
     this.frame = null;
     if (frame && this.world.show(frame, now)) this.clock.textContent = `${frame.time.toFixed(2)} s`;

@@ -150,6 +150,7 @@ export interface Frame {
 
 export type Command =
   | { type: "play"; running: boolean }
+  | { type: "cancel" }
   | { type: "step"; frame?: boolean }
   | { type: "reset" }
   | { type: "material"; body?: string; region?: string; key: string; value: number | string }

@@ -48,10 +48,17 @@ void Session::execute(const Play& c) {
   running_ = c.running;
 }
 
+void Session::execute(const Cancel&) {
+  running_ = false;
+  cancelled_ = false;
+  report(Error(ErrorKind::usage, "the step was cancelled",
+               "run on, or take a smaller dt, a larger tolerance or a coarser mesh"));
+}
+
 void Session::execute(const Advance& c) {
   running_ = false;
   if (!c.frame) return take_step();
-  while (!advance(Clock::now() + std::chrono::seconds(1)) && error_.empty()) {
+  while (!advance(Clock::now() + std::chrono::seconds(1)) && error_.empty() && !cancelled_) {
   }
 }
 

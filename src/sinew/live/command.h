@@ -15,6 +15,9 @@ struct Play {
   bool running = true;
 };
 
+// Ends a step that takes long, and pauses.
+struct Cancel {};
+
 // Takes one step, or the steps to the end of the frame; pauses.
 struct Advance {
   bool frame = false;
@@ -108,8 +111,8 @@ struct SaveState {
   std::function<void(std::string)> done;
 };
 
-using Command = std::variant<Play, Advance, Reset, Load, Open, SetMaterial, SetStepping, SetGravity,
-                             SetTimeScale, SetQuantity, Grab, Drag, Release, MoveBall, RemoveBall,
-                             SetCut, SetSprings, SetCompare, SaveState>;
+using Command = std::variant<Play, Cancel, Advance, Reset, Load, Open, SetMaterial, SetStepping,
+                             SetGravity, SetTimeScale, SetQuantity, Grab, Drag, Release, MoveBall,
+                             RemoveBall, SetCut, SetSprings, SetCompare, SaveState>;
 
 }  // namespace sinew::live

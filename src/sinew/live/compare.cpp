@@ -93,6 +93,7 @@ bool Session::catch_up(Clock::time_point deadline, const std::atomic<bool>* inte
   const std::uint32_t errors = other_->errors_;
   const double close = 1e-9 * std::max(1.0, time());
   while (other_->time() < time() - close) {
+    if (cancelled_) return false;
     // The rest of a frame if the first body has finished it, a step if it has taken one.
     const bool finished = other_->steps(deadline, interrupted, !frame_finished_);
     if (other_->errors_ != errors) {

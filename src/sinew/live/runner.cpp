@@ -29,7 +29,7 @@ bool replaces(const Command& later, const Command& earlier) {
     return set->body == other.body && set->region == other.region && set->key == other.key;
   }
   return std::holds_alternative<SetGravity>(later) || std::holds_alternative<SetQuantity>(later) ||
-         std::holds_alternative<SetTimeScale>(later);
+         std::holds_alternative<SetTimeScale>(later) || std::holds_alternative<Cancel>(later);
 }
 
 bool is_of_hand(const Command& command) {
@@ -94,7 +94,8 @@ Runner::~Runner() {
 }
 
 bool Runner::post(Command command) {
-  const bool of_hand = is_of_hand(command);
+  const bool cancels = std::holds_alternative<Cancel>(command);
+  const bool interrupts = cancels || is_of_hand(command);
   {
     const std::lock_guard lock(mutex_);
     if (!commands_.empty() && replaces(command, commands_.back())) {
@@ -104,7 +105,8 @@ bool Runner::post(Command command) {
     } else {
       return false;
     }
-    if (of_hand) interrupted_ = true;
+    if (interrupts) interrupted_ = true;
+    if (cancels) session_.cancel();
   }
   wake_.notify_one();
   return true;

@@ -49,7 +49,8 @@ class Runner {
   double rate_ = 0.0;              // see Status
   Clock::time_point status_at_{};  // time of the last status
   Clock::time_point published_at_{};
-  std::atomic<bool> interrupted_{false};  // a hand has moved, which the current frame must take up
+  std::atomic<bool> interrupted_{false};  // a hand has moved, which the current frame must take up,
+                                          // or Cancel waits
 
   mutable std::mutex mutex_;  // for all members below
   std::condition_variable wake_;

@@ -94,6 +94,7 @@ SteppingOptions Session::options_for(const Scene& scene) const {
   o.duration = no_limit;
   o.interval = 1.0 / frames_per_second;
   o.budget.reset();
+  o.cancel = leader_ != nullptr ? &leader_->cancelled_ : &cancelled_;
   if (o.stepper == StepperKind::rest) o.stepper = StepperKind::implicit;
   if (scene.names_steps) return o;
   if (leader_ == nullptr) {

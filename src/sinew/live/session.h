@@ -42,6 +42,10 @@ class Session {
   bool advance(Clock::time_point deadline, const std::atomic<bool>* interrupted = nullptr);
   void take_step();
 
+  // Ends an implicit step that is being taken; the state is the one before it. No step is taken
+  // until the command Cancel has been applied. May be called by any thread.
+  void cancel() { cancelled_ = true; }
+
   // Measures energies too, which costs about as much as a step in double precision.
   Status status();
   Frame frame();
@@ -61,6 +65,7 @@ class Session {
   };
 
   void execute(const Play& c);
+  void execute(const Cancel& c);
   void execute(const Advance& c);
   void execute(const Reset& c);
   void execute(const Load& c);
@@ -82,6 +87,8 @@ class Session {
 
   // `leader`: the session that this one is compared with; it takes the leader's stepper.
   Session(const Scene& scene, const Session* leader);
+
+  std::atomic<bool> cancelled_{false};
 
   sim::World& world() { return sim::internals(simulation_); }
   const sim::World& world() const { return sim::internals(simulation_); }

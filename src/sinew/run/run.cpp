@@ -263,7 +263,11 @@ RunResult build_and_run(const Scene& scene, const RunOptions& options,
   Clock::time_point start;
   bool edited = false;
   sim::WorldOptions how;
-  how.stepping = [](const Scene& s) { return stepping_options(s); };
+  how.stepping = [&options](const Scene& s) {
+    SteppingOptions o = stepping_options(s);
+    o.cancel = options.stop;
+    return o;
+  };
   how.start = [&](const Model& model, const BuildReport&) {
     start = Clock::now();
     if (checkpoint != nullptr) {

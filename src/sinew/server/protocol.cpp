@@ -97,6 +97,7 @@ Request request_of(const std::string& type, Fields& f) {
   if (type == "seen") return Seen{static_cast<std::uint64_t>(f.integer("frame", 1LL << 53))};
   if (type == "control") return TakeControls{};
   if (type == "play") return Command(Play{f.flag("running", true)});
+  if (type == "cancel") return Command(Cancel{});
   if (type == "step") return Command(Advance{f.flag("frame", false)});
   if (type == "reset") return Command(Reset{});
   if (type == "material") {

@@ -88,7 +88,8 @@ bool World::advance_frame(const std::atomic<bool>* stop, Clock::time_point deadl
     bool goes_on = true;
     while (goes_on) {
       finished = stepping_->step(*controls_, run_, stop);
-      goes_on = !finished && (stop == nullptr || !stop->load()) && Clock::now() < deadline;
+      goes_on = !finished && !stepping_->cancelled() && (stop == nullptr || !stop->load()) &&
+                Clock::now() < deadline;
     }
   });
   clock_ = run_.state.time;

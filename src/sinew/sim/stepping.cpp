@@ -211,7 +211,7 @@ void Stepping::watch(const Controls& controls, RunState& run) {
 bool Stepping::one_step(const Controls& controls, RunState& run, const std::atomic<bool>* stop) {
   const Clock::time_point start = Clock::now();
   watch(controls, run);
-  Interrupt interrupt{{}, stop};
+  Interrupt interrupt{{}, stop, options_.cancel};
   if (options_.budget) {  // an equal share of the remaining time
     const std::chrono::duration<double> share((*options_.budget - run.work.seconds) /
                                               static_cast<double>(run.steps_left));

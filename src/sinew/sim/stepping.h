@@ -34,6 +34,9 @@ class Stepping {
   // Steps to the end of the frame. Returns true when that is reached.
   bool advance_frame(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
 
+  // Whether SteppingOptions::cancel is set: no implicit step is taken.
+  bool cancelled() const { return options_.cancel != nullptr && options_.cancel->load(); }
+
   // Steps towards `end` [s]: to the end of the current frame if that is not later, otherwise to
   // `end` itself (with a given dt: the nearest step), which may be within a frame.
   enum class Progress { arrived, frame, stopped };

@@ -20,15 +20,16 @@ enum class Pace {
 struct SteppingOptions {
   StepperKind stepper = StepperKind::verlet;
   StepperOptions method;
-  std::optional<double> dt;      // [s] of all substeps together; absent: "auto"
-  int substeps = 1;              // the step taken is dt / substeps
-  double safety = 0.9;           // share of the stable step that dt = "auto" takes
-  bool allow_unstable = false;   // a given step may be longer than the stable one
-  double duration = no_limit;    // [s]; infinity: no end
-  double interval = 1.0 / 30.0;  // between the ends of frames [s]
-  std::optional<double> budget;  // wall time of a frame's steps [s]
-  Pace pace = Pace::any;         // `any` unless the scene leaves the steps open
-  std::string file;              // the scene's, for messages
+  std::optional<double> dt;                   // [s] of all substeps together; absent: "auto"
+  int substeps = 1;                           // the step taken is dt / substeps
+  double safety = 0.9;                        // share of the stable step that dt = "auto" takes
+  bool allow_unstable = false;                // a given step may be longer than the stable one
+  double duration = no_limit;                 // [s]; infinity: no end
+  double interval = 1.0 / 30.0;               // between the ends of frames [s]
+  std::optional<double> budget;               // wall time of a frame's steps [s]
+  Pace pace = Pace::any;                      // `any` unless the scene leaves the steps open
+  std::string file;                           // the scene's, for messages
+  const std::atomic<bool>* cancel = nullptr;  // see Interrupt::cancel
 
   double given() const { return *dt / substeps; }  // [s]
 

@@ -25,7 +25,7 @@ class ImplicitSteps : public Stepper {
   StepReport step(double h, const Controls& controls, const Interrupt& interrupt, State& state,
                   StepMemory&) override {
     options_.deadline = interrupt.deadline;
-    options_.stop = interrupt.stop;
+    options_.stop = interrupt.cancel;
     options_.most_cuts = interrupt.trial ? 2 : ImplicitOptions().most_cuts;
     return stepper_.step(h, controls, options_, state);
   }

@@ -22,9 +22,10 @@ namespace sinew {
 // Conditions that end a step early.
 struct Interrupt {
   Deadline deadline = {};  // implicit steps: the current iterate becomes the step
-  // Ends a step within a product of the Newton step that it is at: a rest state keeps the best
-  // positions so far, an implicit step is not taken. Explicit steps are short.
+  // Rest states: end within a product of the current Newton step, with the best positions so far.
   const std::atomic<bool>* stop = nullptr;
+  // Implicit steps: end as soon, and are not taken. Explicit steps are short.
+  const std::atomic<bool>* cancel = nullptr;
   bool trial = false;  // an implicit step is given up after two cuts
 };
 
