@@ -156,6 +156,29 @@ class Turning(CaseTest):
             self.near(s["energy"]["kinetic"], right, 0.005)
 
 
+class Contacts(CaseTest):
+    # The state is uniform: 127.78 Pa, 8 mJ. Contacts of nodes reach it to 10 %.
+    def test_patch_of_two_meshes(self):
+        s = self.summary("truth/cpatch.toml")
+        self.near(s["energy"]["elastic"], 8.0e-3, 0.002)
+        for probe in ("if_low", "if_up"):
+            self.near(s["probes"][probe]["displacement"][1], -2.0e-3, 0.002)
+        try:
+            import meshio
+        except ImportError:
+            self.skipTest("meshio is not installed")
+        self.run_sinew("run", DATA / "truth/cpatch.toml", "--out", "o")
+        mesh = meshio.read(self.dir / "o/frames/cpatch_0001.vtu")
+        for pressure in mesh.cell_data["pressure"][0]:
+            self.near(float(pressure), 127.78, 0.11)
+
+    def test_flush_boxes_in_implicit_steps(self):
+        s = self.summary("behaviour/static-stack.toml", "stepper=\"implicit\"", "lower.drag=5",
+                         "upper.drag=5")
+        self.near(s["probes"]["upper"]["position"][1], 0.0742, 0.002)
+        self.assertLess(s["static"]["newton_steps"], 3000)
+
+
 class Rest(CaseTest):
     def test_a_body_on_a_body(self):
         s = self.summary("behaviour/static-stack.toml")

@@ -10,6 +10,7 @@ namespace {
 
 constexpr double max_cosine = 0.3;       // largest cosine between the normals of node and triangle
 constexpr double max_cosine_self = 0.0;  // the same within a body
+constexpr double rim_share = 1e-3;       // of the local size, that a node on a rim may be outside
 
 // The nearest point of a triangle.
 OnTriangle nearest_on(const Vec3& p, const std::vector<Vec3>& x, const Triangle& t) {
@@ -316,8 +317,13 @@ NodeProximity NarrowPhase::node_contact(Index slot, Index owner, const NearTrian
   }
 
   // At the end of the step.
+  // A node on the rim of a flush body lies on the side of the other: rounding decides on which side
+  // of that plane. It counts as inside.
+  const bool inside =
+      end.any.inside ||
+      (end.any.triangle >= 0 && end.any.distance() <= rim_share * surface_.node_size[uz(slot)]);
   const bool deep =
-      end.any.inside && end.fit.inside && end.fit.distance() <= pair_depth(slot, end.fit.triangle);
+      inside && end.fit.inside && end.fit.distance() <= pair_depth(slot, end.fit.triangle);
   const bool close = !end.any.inside && end.fit.triangle >= 0 && !end.fit.inside &&
                      end.fit.distance() < moves.reach;
   const auto finish = [&](Index t) {
