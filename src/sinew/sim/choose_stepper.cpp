@@ -72,7 +72,9 @@ class Policy {
     return options_.interval / options_.first_length(choice.first);
   }
 
-  // Nothing if a step finds no equilibrium.
+  Interrupt in_trial() const { return {{}, nullptr, options_.cancel, true}; }
+
+  // Nothing if a step finds no equilibrium, or is cancelled.
   std::optional<TrialCost> try_steps(const StepperChoice& choice) const {
     TrialCost trial;
     State state = start_;
@@ -81,8 +83,8 @@ class Policy {
     const double h = options_.first_length(choice.first);
     try {
       for (int i = 0; i < trial_steps; ++i) {
-        const StepReport report =
-            choice.stepper->step(h, controls_, {.trial = true}, state, memory);
+        const StepReport report = choice.stepper->step(h, controls_, in_trial(), state, memory);
+        if (report.stopped) return std::nullopt;
         trial.newton += report.newton;
         trial.products += report.products;
       }
@@ -145,7 +147,7 @@ class Policy {
     for (int i = 0; i < 3; ++i) {
       const Clock::time_point start = Clock::now();
       try {
-        choice.stepper->step(h, controls_, {}, state, memory);
+        choice.stepper->step(h, controls_, in_trial(), state, memory);
       } catch (const Error&) {
         return no_limit;
       }
