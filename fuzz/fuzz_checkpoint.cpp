@@ -43,23 +43,21 @@ center = [0, 0.22, 0]
 radius = 0.03
 )";
 
-// A World some steps after its start, and its state.
-struct Started {
-  sim::World world;
-  std::string state;
-  explicit Started(const char* stepper) : world({scene_of(stepper), {}}, {}) {
-    for (int i = 0; i < 5; ++i) world.advance_frame(nullptr);
-    state = encode_run(world.model().hash(), world.run());
-  }
-  static Scene scene_of(const char* stepper) {
-    std::string text(scene_text);
-    text.replace(text.find("STEPPER"), 7, stepper);
-    return parse_scene(text, "fuzz.toml", ".");
-  }
-};
+sim::World start(const char* stepper) {
+  std::string text(scene_text);
+  text.replace(text.find("STEPPER"), 7, stepper);
+  return sim::World({parse_scene(text, "fuzz.toml", "."), {}}, {});
+}
 
-void go_on(Started& from, const std::uint8_t* data, std::size_t size) {
-  std::string bytes = from.state;
+// The state some steps after the start.
+std::string state_of(const char* stepper) {
+  sim::World world = start(stepper);
+  for (int i = 0; i < 5; ++i) world.advance_frame(nullptr);
+  return encode_run(world.model().hash(), world.run());
+}
+
+void go_on(const char* stepper, std::string bytes, const std::uint8_t* data, std::size_t size) {
+  sim::World world = start(stepper);
   const std::size_t hashed = bytes.size() - sizeof(std::uint64_t);
   for (; size >= 3; data += 3, size -= 3) {
     const std::size_t place = (std::size_t{data[0]} << 8 | data[1]) % hashed;
@@ -68,12 +66,12 @@ void go_on(Started& from, const std::uint8_t* data, std::size_t size) {
   const std::uint64_t closing = digest(std::string_view(bytes).substr(0, hashed));
   std::memcpy(bytes.data() + hashed, &closing, sizeof closing);
   try {
-    from.world.run() = decode_run(bytes, "fuzz", from.world.model().hash(),
-                                  from.world.model().rest_position.size());
-    RunState& run = from.world.run();
+    world.run() =
+        decode_run(bytes, "fuzz", world.model().hash(), world.model().rest_position.size());
+    RunState& run = world.run();
     for (int i = 0; i < 3; ++i) {
       const double h = std::isfinite(run.step) && run.step > 0.0 ? run.step : 1e-3;
-      from.world.stepping().take_step(from.world.controls(), run, h);
+      world.stepping().take_step(world.controls(), run, h);
     }
   } catch (const Error& error) {
     if (error.kind() == ErrorKind::internal) std::abort();
@@ -83,9 +81,9 @@ void go_on(Started& from, const std::uint8_t* data, std::size_t size) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static Started verlet("verlet");
-  static Started implicit("implicit");
-  go_on(verlet, data, size);
-  go_on(implicit, data, size);
+  static const std::string verlet = state_of("verlet");
+  static const std::string implicit = state_of("implicit");
+  go_on("verlet", verlet, data, size);
+  go_on("implicit", implicit, data, size);
   return 0;
 }
