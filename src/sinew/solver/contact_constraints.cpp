@@ -34,7 +34,8 @@ std::optional<Contact> persisting_contact(const Model& model, const ContactId& i
                                           const std::vector<Vec3>& x, double reach) {
   if (id.kind != ContactKind::node_triangle) return std::nullopt;
   const ContactSurface& surface = model.surface;
-  if (uz(id.feature) >= surface.nodes.size() || uz(id.partner) >= surface.triangles.size())
+  if (!model.body_contact || uz(id.feature) >= surface.nodes.size() ||
+      uz(id.partner) >= surface.triangles.size())
     return std::nullopt;  // of a state that was made by hand
   const Triangle& t = surface.triangles[uz(id.partner)];
   const Plane plane = plane_of(x, t);

@@ -7,6 +7,7 @@
 
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
+#include "sinew/contact/contact_finder.h"
 #include "sinew/forces/inversion_recovery.h"
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
@@ -175,8 +176,10 @@ void StaticSolver::throw_no_rest(const Controls& controls, double time,
                                  const StaticOptions& options, const State& start,
                                  const StepReport& report) const {
   std::string found;
-  if (options.finds_limit_load) {
-    const LimitLoad limit = find_limit_load(model_, controls, time, options, start);
+  const LimitLoad limit = options.finds_limit_load
+                              ? find_limit_load(model_, controls, time, options, start)
+                              : LimitLoad{};
+  if (limit.rests > 0.0 || limit.fails < 1.0) {  // else stopped before the first trial has ended
     found =
         limit.rests > 0.0
             ? fmt::format(
@@ -302,7 +305,8 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
     gradual = true;
     length *= 0.5;
   }
-  if (support.none && resting.empty() && report.contacts == 0)
+  // Beside something to touch the place matters.
+  if (support.none && resting.empty() && !ContactFinder::anything_to_find(model_))
     undo_drift(model_, controls, start.position, state.position);
   state.half_velocity.assign(state.position.size(), Vec3::Zero());
   ++state.step;
