@@ -29,7 +29,6 @@ TEST(Quantity, QuantitiesAreThoseOfAKnownDeformation) {
   all_near(Quantity::stress, mu / 1.1 * (1.21 - 1.0), 1e-3 * mu);
   EXPECT_NEAR(measure(Quantity::stretch, s.model(), stretched, *s.topology()).at(0), 0.1, 1e-6);
   all_near(Quantity::energy, 0.5 * mu * ((1.21 + 2.0) / std::cbrt(1.21) - 3.0), 1e-3 * mu);
-  EXPECT_EQ(von_mises(1e3, -Mat3::Identity()), 0.0);
   EXPECT_EQ(distortion_energy(1e3, -Mat3::Identity()), 0.0);
   EXPECT_NEAR(distortion_energy(1e3, 1.3 * Mat3::Identity()), 0.0, 1e-9);
   EXPECT_EQ(quantity_named("speed"), Quantity::speed);

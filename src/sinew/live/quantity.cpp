@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "sinew/base/parallel.h"
+#include "sinew/forces/stress.h"
 #include "sinew/mesh/tet_mesh.h"
 #include "sinew/run/recorder.h"
 
@@ -19,10 +20,6 @@ Mat3 edges_of(const std::vector<Vec3>& x, const Tet& t) {
 
 Mat3 deformation_of(const Model& model, const State& state, const Tet& t) {
   return edges_of(state.position, t) * edges_of(model.rest_position, t).inverse();
-}
-
-double stress_of(const Model& model, const State& state, Index tet) {
-  return von_mises(model.tet_modulus[uz(tet)], deformation_of(model, state, model.tets[uz(tet)]));
 }
 
 double energy_of(const Model& model, const State& state, Index tet) {
@@ -41,14 +38,6 @@ std::optional<Quantity> quantity_named(std::string_view name) {
     if (quantities[q].name == name) return static_cast<Quantity>(q);
   }
   return std::nullopt;
-}
-
-double von_mises(double shear_modulus, const Mat3& F) {
-  const double J = F.determinant();
-  if (!(J > 0.0)) return 0.0;
-  const Mat3 B = F * F.transpose();
-  const Mat3 deviator = B - B.trace() / 3.0 * Mat3::Identity();
-  return std::sqrt(1.5) * shear_modulus / J * deviator.norm();
 }
 
 double distortion_energy(double shear_modulus, const Mat3& F) {
@@ -88,9 +77,14 @@ std::vector<float> measure(Quantity quantity, const Model& model, const State& s
     case Quantity::volume:
       fill([&](Index i) { return mean(i, volume_change_of); });
       break;
-    case Quantity::stress:
-      fill([&](Index i) { return mean(i, stress_of); });
+    case Quantity::stress: {
+      const std::vector<Mat3> stress = measure_stress(model, state.position);
+      fill([&](Index i) {
+        return mean(i,
+                    [&](const Model&, const State&, Index t) { return von_mises(stress[uz(t)]); });
+      });
       break;
+    }
     case Quantity::energy:
       fill([&](Index i) { return mean(i, energy_of); });
       break;

@@ -43,11 +43,6 @@ inline const QuantityInfo& info(Quantity q) {
 }
 std::optional<Quantity> quantity_named(std::string_view name);
 
-// Von Mises stress of the (stable) neo-Hookean material [Pa] from its shear modulus [Pa] and the
-// deformation gradient F: sqrt(3/2) |dev s|, s = mu / J (F F^T) up to a pressure. 0 for a flat or
-// inverted tet, which has no such stress.
-double von_mises(double shear_modulus, const Mat3& F);
-
 // Energy density of such a material for a change of shape without volume [J/m3]: mu / 2 (J^(-2/3)
 // |F|^2 - 3). 0 for a flat or inverted tet.
 double distortion_energy(double shear_modulus, const Mat3& F);
