@@ -22,12 +22,10 @@ void read_hard(const Model& model, const Controls& controls, const State& state,
   for (std::size_t o = 0; o < readings.size() && o < state.obstacle_force.size(); ++o)
     if (model.obstacles[o].hard()) readings[o].force = state.obstacle_force[o];
 
-  for (const ContactForce& c : state.reactions.contacts) {
-    const Index obstacle = c.id.obstacle();
-    if (obstacle < 0) continue;
-    ObstacleReading& reading = readings[uz(obstacle)];
-    reading.torque -= (place_of(c, state.position) - reading.center).cross(c.force);
-  }
+  for (std::size_t o = 0; o < readings.size(); ++o)
+    if (model.obstacles[o].hard())
+      readings[o].torque =
+          load_on_obstacle(state, static_cast<Index>(o), readings[o].center).torque;
 
   std::vector<Contact> contacts;
   if (finder != nullptr)

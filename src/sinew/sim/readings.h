@@ -49,6 +49,16 @@ struct ForceSum {
 // The place of the node or edge of a contact force [m].
 Vec3 place_of(const ContactForce& c, const std::vector<Vec3>& x);
 
+// Adds the contact forces of the last step to the forces on the nodes [N] (nodes).
+void add_contact_forces(const State& state, std::vector<Vec3>& force);
+
+// What a body does to a pin, about a point. `force`: on the nodes, with contacts [N] (nodes).
+ForceSum load_on_pin(const Model& model, const Controls& controls, const State& state,
+                     const std::vector<Vec3>& force, const Pin& pin, const Vec3& about);
+
+// What the bodies did to a hard obstacle in the last step, about a point.
+ForceSum load_on_obstacle(const State& state, Index obstacle, const Vec3& about);
+
 // Tets with v_t < 0 at positions x.
 std::int64_t count_inverted(const Model& model, const std::vector<Vec3>& x);
 

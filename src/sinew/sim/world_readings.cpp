@@ -31,38 +31,25 @@ const std::vector<Vec3>& World::forces() {
     if (!evaluator_) evaluator_ = std::make_unique<ForceEvaluator>(*model_, Precision::double_);
     forces_ = evaluator_->evaluate(*controls_, run_.state).force;
   });
-  const Reactions& r = run_.state.reactions;
-  for (const ContactForce& p : r.contacts)
-    for (std::size_t a = 0; a < p.count(); ++a) forces_[uz(p.node[a])] += p.weight[a] * p.force;
+  add_contact_forces(run_.state, forces_);
   forces_of_ = changes_;
   return forces_;
 }
 
 Wrench World::wrench(std::size_t obstacle, const Vec3& about) {
-  const Obstacle& o = model_->obstacles[obstacle];
+  if (model_->obstacles[obstacle].hard())
+    return wrench_of(load_on_obstacle(run_.state, static_cast<Index>(obstacle), about));
   ForceSum sum{about};
-  if (!o.hard()) {
-    for_each_pressed(*model_, soft_sphere(*model_, *controls_, obstacle, run_.state.time),
-                     run_.state.position, [&](std::size_t n, const Vec3&, const Vec3& force) {
-                       sum.add(run_.state.position[n], -force);
-                     });
-    return wrench_of(sum);
-  }
-  for (const ContactForce& p : run_.state.reactions.contacts)
-    if (p.id.obstacle() == static_cast<Index>(obstacle))
-      sum.add(place_of(p, run_.state.position), -p.force);
+  for_each_pressed(*model_, soft_sphere(*model_, *controls_, obstacle, run_.state.time),
+                   run_.state.position, [&](std::size_t n, const Vec3&, const Vec3& force) {
+                     sum.add(run_.state.position[n], -force);
+                   });
   return wrench_of(sum);
 }
 
 Wrench World::pin_wrench(std::size_t pin, const Vec3& about) {
-  const std::vector<Vec3>& force = forces();
-  const std::vector<Index>& nodes = model_->pins[pin].nodes;
-  ForceSum sum{about};
-  for (const Index node : nodes) {
-    const auto n = uz(node);
-    sum.add(run_.state.position[n], force[n] + model_->mass[n] * controls_->gravity);
-  }
-  return wrench_of(sum);
+  return wrench_of(
+      load_on_pin(*model_, *controls_, run_.state, forces(), model_->pins[pin], about));
 }
 
 ContactFinder* World::finder() {
