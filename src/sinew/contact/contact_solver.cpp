@@ -323,7 +323,7 @@ ContactReport solve_contacts(const Model& model, const std::vector<Contact>& con
     report.work_in += total.dot(i.speed);
     // A contact that starts the step inside is led out: of the work of its impulse p, the mean of
     // p v- and p v+, the part p v+ is put in.
-    if (!a.bounces) report.work_in += i.impulse * std::max(0.0, i.least);
+    if (!a.bounces) report.made += i.impulse * std::max(0.0, i.least);
     // Of the sliding that is left: 0 if it sticks, never negative by Coulomb's law.
     report.friction += std::max(0.0, -i.friction_impulse.dot(relative(i, s.velocity) - i.speed));
     const Index obstacle = c.id.obstacle();
@@ -333,7 +333,8 @@ ContactReport solve_contacts(const Model& model, const std::vector<Contact>& con
     contact_forces.push_back({c.id, c.node, c.weight, total / mean_step});
   }
   // What bounces and the error of the sweeps can make is put in too, so that heat only grows.
-  report.work_in += std::max(0.0, gained - report.work_in);
+  report.made += std::max(0.0, gained - report.work_in - report.made);
+  report.work_in += report.made;
   report.dissipated += report.work_in - gained;
   for (std::size_t k = 1; k < s.node.size(); ++k) s.slot[uz(s.node[k])] = 0;
   return report;

@@ -16,7 +16,8 @@ struct ContactReport {
   int sweeps = 0;           // Gauss-Seidel sweeps over all contacts
   double dissipated = 0.0;  // [J] by impact and friction
   double friction = 0.0;    // [J] of that by friction
-  double work_in = 0.0;     // [J] by colliders that move, and by leading nodes out of surfaces
+  double work_in = 0.0;     // [J] by colliders that move, and `made`
+  double made = 0.0;        // [J] by leading nodes out of surfaces, and by the error of the sweeps
   double deepest = 0.0;     // [m] the largest penetration that remains
 };
 

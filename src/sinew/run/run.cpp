@@ -171,10 +171,11 @@ class Runner {
 
   void record() {
     world_.log_frame();
-    const Energies e = measure_energies(world_.model(), world_.controls(), run_.state, force());
+    const std::vector<Vec3>& f = force();
+    const Energies e = measure_energies(world_.model(), world_.controls(), run_.state, f);
     run_.peak_energy = std::max(run_.peak_energy, e.largest_entry());
     run_.peak_drift = std::max(run_.peak_drift, std::abs(e.total() - run_.start_energy));
-    if (recorder_) recorder_->record(world_.controls(), run_, e, force(), world_.finder());
+    if (recorder_) recorder_->record(world_.controls(), run_, e, f, world_.finder());
     // A rest state has no motion to account for.
     if (run_.stepper != StepperKind::rest && !world_.scene().allow_unstable)
       refuse_made_energy(e, run_);
@@ -228,8 +229,8 @@ class Runner {
       s.warnings.push_back("implicit steps know no restitution: every impact is plastic");
     }
     if (run_.stepper != StepperKind::rest) {  // a rest state has no motion to account for
-      for (std::string warning :
-           {account_warning(run_), crushed_warning(world_.model(), run_.state.position)})
+      for (std::string warning : {account_warning(run_), led_out_warning(run_),
+                                  crushed_warning(world_.model(), run_.state.position)})
         if (!warning.empty()) s.warnings.push_back(std::move(warning));
     }
     if (run_.recovery_steps > 0) {

@@ -130,10 +130,22 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   return s;
 }
 
+namespace {
+constexpr double closes = 0.01;    // share of the account's largest entry
+constexpr double rounding = 1e-9;  // [J]
+}  // namespace
+
+std::string led_out_warning(const RunCounters& c) {
+  if (!(c.led_out_work > std::max(rounding, closes * c.peak_energy))) return {};
+  return fmt::format(
+      "contacts and limits put in {:.3g} J, {:.2g} % of the largest entry of the energy account: "
+      "bodies that started inside something were pushed out, limits pulled, or the contacts of a "
+      "step were not solved to the end",
+      c.led_out_work, 100.0 * c.led_out_work / c.peak_energy);
+}
+
 std::string account_warning(const RunCounters& c) {
-  constexpr double closes = 0.01;   // share of the largest entry
-  constexpr double nothing = 1e-9;  // [J] below this, rounding
-  if (!(c.peak_drift > std::max(nothing, closes * c.peak_energy))) return {};
+  if (!(c.peak_drift > std::max(rounding, closes * c.peak_energy))) return {};
   return fmt::format(
       "the energy account does not close: it was off by up to {:.3g} J, {:.2g} % of its largest "
       "entry{}; a smaller dt or safety makes it smaller",

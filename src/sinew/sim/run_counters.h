@@ -25,6 +25,7 @@ namespace sinew {
   X(std::int64_t, step_increases, c, "step_increases", "times that it was made longer again")      \
   X(std::int64_t, recovery_steps, c + (r.recovered > 0 ? 1 : 0), "recovery_steps", "steps with inversion recovery") \
   X(double, recovery_work, c + r.recovery_work, "recovery_work", "work of inversion recovery, part of work_in [J]") \
+  X(double, led_out_work, c + r.led_out, "led_out_work", "work of contacts and limits that lead back to their bounds, part of work_in [J]") \
   X(std::int64_t, contacts, r.contacts, "contacts", "places that touched in the last step")        \
   X(double, deepest, std::max(c, r.deepest), "deepest_penetration", "of all steps [m]")            \
   X(double, depth, r.deepest, "penetration", "of the last step [m]")                               \

@@ -243,6 +243,7 @@ bool ImplicitStepper::backward_euler(double h, const Controls& controls,
   const double moved = constraints_->contact_constraints().work_of_obstacles();
   // Reactions that lead nodes back to their bounds put work in, so that heat only grows.
   const double put_in = std::max(moved, gained);
+  report.led_out += put_in - moved;
   state.energy.work_in += put_in;
   state.energy.dissipated += put_in - gained;
   report.friction += constraints_->contact_constraints().work_of_friction(state.position);

@@ -21,6 +21,7 @@ struct StepReport {
   Index contacts = 0;             // contacts at the end
   double deepest = 0.0;           // the deepest remaining penetration of a contact [m]
   double friction = 0.0;          // work of friction in contacts [J]
+  double led_out = 0.0;           // work of contacts and limits that lead back to their bounds [J]
   int limit_sweeps = 0;           // sweeps that moved a spring
   bool limits_met = true;         // the ground and the limits hold to their tolerances
   int recovered = 0;              // bodies under inversion recovery (forces/inversion_recovery.h)

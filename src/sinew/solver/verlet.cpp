@@ -83,7 +83,8 @@ void add_work_of_obstacles(const Model& model, const Controls& controls, double 
 // work of the impulses uses the mean of the velocities before and after the step, as in Verlet's
 // energy balance: it is 0 for a taut spring at rest.
 void follow_positions(const Model& model, const std::vector<Vec3>& force,
-                      const std::vector<Vec3>& predicted, double h, State& state) {
+                      const std::vector<Vec3>& predicted, double h, State& state,
+                      StepReport& report) {
   const double mean_step = 0.5 * (state.last_step + h);
   const double gained = parallel_sum(model.node_count(), [&](Index i) {
     const auto k = uz(i);
@@ -94,6 +95,7 @@ void follow_positions(const Model& model, const std::vector<Vec3>& force,
     return 0.5 * model.mass[k] * change.dot(before + state.half_velocity[k]);
   });
   // Limits that pull, as when a pin moves or a step starts beyond them, put work in.
+  report.led_out += std::max(0.0, gained);
   state.energy.work_in += std::max(0.0, gained);
   state.energy.dissipated += std::max(0.0, -gained);
 }
@@ -114,7 +116,7 @@ void enforce_limits(const Model& model, const Controls& controls, const std::vec
   report.limits_met =
       sweep.over == 0 || measure_limit_violation(model, state.position) <= model.limit_tolerance;
 
-  follow_positions(model, force, predicted, h, state);
+  follow_positions(model, force, predicted, h, state, report);
 }
 
 // Projects the limited cells back to their volume; velocities follow.
@@ -123,7 +125,7 @@ void enforce_volume(const Model& model, const std::vector<Vec3>& force, double h
   const std::vector<Vec3> predicted = state.position;
   const VolumeLimitReport volume = limit.enforce(model, state.position);
   report.limits_met = report.limits_met && volume.within;
-  if (volume.projections > 0) follow_positions(model, force, predicted, h, state);
+  if (volume.projections > 0) follow_positions(model, force, predicted, h, state, report);
 }
 
 // The speed of shear waves in the body's stiffest material at rest, sqrt(mu / rho) [m/s].
@@ -248,6 +250,7 @@ StepReport VerletStepper::step(double h, const Controls& controls, State& state)
       report.contacts = contact.contacts;
       report.deepest = contact.deepest;
       report.friction = contact.friction;
+      report.led_out = contact.made;
     }
     if (!model_.limited.empty()) enforce_limits(model_, controls, force, h, state, report);
     if (model_.has_volume_limit) enforce_volume(model_, force, h, volume_limit_, state, report);
