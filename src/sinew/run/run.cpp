@@ -229,7 +229,7 @@ class Runner {
       s.warnings.push_back("implicit steps know no restitution: every impact is plastic");
     }
     if (run_.stepper != StepperKind::rest) {  // a rest state has no motion to account for
-      for (std::string warning : {account_warning(run_), led_out_warning(run_),
+      for (std::string warning : {account_warning(run_), led_out_warning(world_.model(), run_),
                                   crushed_warning(world_.model(), run_.state.position)})
         if (!warning.empty()) s.warnings.push_back(std::move(warning));
     }

@@ -13,6 +13,7 @@
 #include "sinew/forces/strain_limits.h"
 #include "sinew/forces/volume.h"
 #include "sinew/forces/volume_law.h"
+#include "sinew/model/mean_edge.h"
 #include "sinew/sim/obstacle_reading.h"
 #include "sinew/solver/implicit.h"
 
@@ -135,13 +136,17 @@ constexpr double closes = 0.01;    // share of the account's largest entry
 constexpr double rounding = 1e-9;  // [J]
 }  // namespace
 
-std::string led_out_warning(const RunCounters& c) {
+std::string led_out_warning(const Model& model, const RunCounters& c) {
+  constexpr double deep = 0.01;  // of the mean edge
   if (!(c.led_out_work > std::max(rounding, closes * c.peak_energy))) return {};
+  if (!(c.deepest > deep * mean_edge(model))) return {};
   return fmt::format(
-      "contacts and limits put in {:.3g} J, {:.2g} % of the largest entry of the energy account: "
-      "bodies that started inside something were pushed out, limits pulled, or the contacts of a "
-      "step were not solved to the end",
-      c.led_out_work, 100.0 * c.led_out_work / c.peak_energy);
+      "contacts put in {:.3g} J, {:.2g} % of the largest entry of the energy account: nodes were "
+      "up "
+      "to {:.2g} mm inside a surface and were led out, because they started there or because the "
+      "contacts of a step were not solved to the end; a smaller safety or dt, or a finer mesh, "
+      "makes it smaller",
+      c.led_out_work, 100.0 * c.led_out_work / c.peak_energy, 1e3 * c.deepest);
 }
 
 std::string account_warning(const RunCounters& c) {

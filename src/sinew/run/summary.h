@@ -89,8 +89,9 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
 // than a hundredth of its largest entry. Empty: it closes.
 std::string account_warning(const RunCounters& counters);
 
-// Contacts and limits have put in more than a hundredth of the largest entry. Empty: they have not.
-std::string led_out_warning(const RunCounters& counters);
+// Contacts that lead nodes out of a surface, from a hundredth of the mean edge or more, have put in
+// more than a hundredth of the largest entry. Empty: they have not.
+std::string led_out_warning(const Model& model, const RunCounters& counters);
 
 // The first body with an inverted tet, or of which more than one tet in 20 has less than 40 % of
 // its volume. Empty: none.
