@@ -18,7 +18,7 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 MODULES = ("beam", "twist", "cook", "bending", "indentation", "vibration", "liver",
-           "analytic", "gel")
+           "analytic", "gel", "composite")
 
 
 def cases():

@@ -96,6 +96,8 @@ struct SurfaceArrays {
 struct RegionDescription {
   std::string name = {};
   std::vector<int> labels = {};
+  // Instead of labels: the tets whose centroid lies in its box, sphere and half_space.
+  std::optional<SelectionDescription> select = {};
   MaterialDescription material = {};
 };
 

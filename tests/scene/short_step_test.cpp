@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "sinew/scene/place.h"
 #include "tests/scene/support.h"
 
 namespace sinew {

@@ -42,11 +42,13 @@ def shape_functions(points):
 
 
 class Bar:
-    """A Block of one material, its unknowns ordered by layers along the third axis."""
+    """A Block, its unknowns ordered by layers along the third axis. young, poisson: numbers, or
+    arrays (elements) where it has more than one material."""
 
     def __init__(self, block: Block, young, poisson, reduced=True):
-        lam, self.mu = lame(young, poisson)
-        self.kappa = lam + self.mu
+        lam, mu = lame(np.broadcast_to(young, len(block.elements)),
+                       np.broadcast_to(poisson, len(block.elements)))
+        self.mu, self.kappa = mu[:, None], (lam + mu)[:, None]  # (elements, 1), for the points
         self.obstacle = None  # with energy(x), force(x) and, for the last layer, stiffness(x)
         self.rest = block.points
         self.elements = block.elements - 1
@@ -79,16 +81,16 @@ class Bar:
         obstacle = self.obstacle.energy(x) if self.obstacle else 0.0
         return float((w * self.weight).sum()) + obstacle
 
-    def pressure_and_cofactor(self, f):
+    def pressure_and_cofactor(self, f, chosen=slice(None)):
         cofactor = np.stack([np.cross(f[..., 1], f[..., 2]), np.cross(f[..., 2], f[..., 0]),
                              np.cross(f[..., 0], f[..., 1])], axis=-1)
-        return self.kappa * (np.linalg.det(f) - 1.0) - self.mu, cofactor
+        return self.kappa[chosen] * (np.linalg.det(f) - 1.0) - self.mu[chosen], cofactor
 
     def force(self, x):
         """The energy's derivative [N] (nodes, 3): what has to be applied to hold x."""
         f = self.deformation(x)
         pressure, cofactor = self.pressure_and_cofactor(f)
-        stress = (self.mu * f + pressure[..., None, None] * cofactor) * self.weight[..., None, None]
+        stress = (self.mu[..., None, None] * f + pressure[..., None, None] * cofactor) * self.weight[..., None, None]
         share = np.einsum("eqij,eqaj->eai", stress, self.gradient)
         force = np.stack([np.bincount(self.elements.ravel(), share[..., i].ravel(), len(self.rest))
                           for i in range(3)], axis=1)
@@ -98,11 +100,12 @@ class Bar:
         """Second derivatives (elements, 20, 3, 20, 3) of the chosen elements."""
         gradient, weight = self.gradient[chosen], self.weight[chosen]
         f = np.einsum("eai,eqaj->eqij", x[self.elements[chosen]], gradient)
-        pressure, cofactor = self.pressure_and_cofactor(f)
-        d = self.kappa * np.einsum("eqij,eqkl->eqijkl", cofactor, cofactor)
+        pressure, cofactor = self.pressure_and_cofactor(f, chosen)
+        of_element = (slice(None), slice(None), None, None, None, None)
+        d = self.kappa[chosen][of_element] * np.einsum("eqij,eqkl->eqijkl", cofactor, cofactor)
         d += np.einsum("eq,ikm,jln,eqmn->eqijkl", pressure, LEVI_CIVITA, LEVI_CIVITA, f,
                        optimize=True)
-        d += self.mu * np.einsum("ik,jl->ijkl", np.eye(3), np.eye(3))
+        d += self.mu[chosen][of_element] * np.einsum("ik,jl->ijkl", np.eye(3), np.eye(3))
         d *= weight[..., None, None, None, None]
         e, q = weight.shape
         half = (d.reshape(e, q, 27, 3) @ gradient.transpose(0, 1, 3, 2)).reshape(e, q, 3, 3, 60)
@@ -166,7 +169,7 @@ class Bar:
         size = np.ptp(self.rest, axis=0).max()
         x = x.copy()
         shift = 0.0
-        stiff = self.mu * np.cbrt(self.weight.sum()) / len(self.layers)
+        stiff = self.mu.max() * np.cbrt(self.weight.sum()) / len(self.layers)
         for _ in range(most):
             force = self.force(x)
             residual = np.where(free, force - load, 0.0)

@@ -21,6 +21,7 @@
 #include "sinew/scene/connect.h"
 #include "sinew/scene/loose.h"
 #include "sinew/scene/place.h"
+#include "sinew/scene/regions.h"
 #include "sinew/scene/rigid_mesh.h"
 #include "sinew/scene/start.h"
 #include "sinew/scene/start_warnings.h"
@@ -41,52 +42,24 @@ Vec3 mean(const Model& model, const std::vector<Index>& nodes) {
 
 // ---- bodies ----
 
-// Where the labels come from, and what else the file offers.
-std::string label_source(const io::ReadNotes& notes) {
-  std::string text;
-  if (!notes.tet_labels.empty()) text += fmt::format(" (from the file's {})", notes.tet_labels);
-  const std::string others = io::unused_cell_arrays(notes);
-  if (!others.empty())
-    text += fmt::format(
-        "; arrays of whole numbers that are not used: {}; labels = \"NAME\" takes one", others);
-  return text;
-}
-
-[[noreturn]] void refuse_label(const PlacedBody& placed, const SceneRegion& region, int label,
-                               const std::set<int>& known) {
-  const SceneBody& body = *placed.body;
-  std::string list;
-  for (const int l : known) list += (list.empty() ? "" : ", ") + std::to_string(l);
-  throw Error(ErrorKind::input,
-              fmt::format("[body.{}.region.{}] covers label {}, which the mesh does not have",
-                          body.name, region.name, label),
-              "its tets have the labels: " + list + label_source(placed.notes), region.where);
-}
-
-// Materials by region: those of the scene, then the body's own for the labels that none covers.
+// Materials by region: those of the scene, then the body's own for the tets that none covers.
 void assign_regions(const PlacedBody& placed, BodySpec& spec) {
   const SceneBody& body = *placed.body;
-  const TetMesh& mesh = placed.mesh;
-  std::set<int> known(mesh.tet_label.begin(), mesh.tet_label.end());
-  if (mesh.tet_label.empty()) known = {0};
-  std::map<int, int> region_of;
   for (const SceneRegion& region : body.regions) {
-    for (const int label : region.labels) {
-      if (known.count(label) == 0) refuse_label(placed, region, label, known);
-      region_of[label] = static_cast<int>(spec.materials.size());
-    }
     spec.regions.push_back(region.name);
     spec.materials.push_back(region.material);
   }
+  spec.tet_region = regions_of_tets(placed);
   const int rest = static_cast<int>(spec.materials.size());
-  if (region_of.size() < known.size()) {
-    spec.regions.push_back("rest");
-    spec.materials.push_back(body.material);
+  bool any = false;
+  for (int& region : spec.tet_region) {
+    if (region >= 0) continue;
+    region = rest;
+    any = true;
   }
-  for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
-    const auto found = region_of.find(mesh.tet_label.empty() ? 0 : mesh.tet_label[t]);
-    spec.tet_region.push_back(found == region_of.end() ? rest : found->second);
-  }
+  if (!any) return;
+  spec.regions.push_back("rest");
+  spec.materials.push_back(body.material);
 }
 
 // Products of finite material values may still overflow.

@@ -154,6 +154,7 @@ KeyTables make_tables() {
               {
                   integer("label", ""),
                   other("labels", T::integers),
+                  other("select", T::table),
               }};
   t.motion = {"motion",
               "a motion",

@@ -101,17 +101,32 @@ SceneRegion parse_region(const DocEntry& entry, const std::string& body, const M
                       {&key_tables().region, &key_tables().material});
   SceneRegion region;
   region.name = entry.key;
-  if (reader.has("label") == reader.has("labels"))
-    throw Error(
-        ErrorKind::input,
-        fmt::format("{} has {}", reader.name(),
-                    reader.has("label") ? "both a label and labels" : "neither a label nor labels"),
-        "say which of the mesh's labels it covers: label = 1 or labels = [1, 2]", reader.where());
+  std::vector<const char*> given;
+  for (const char* key : {"label", "labels", "select"})
+    if (reader.has(key)) given.push_back(key);
+  if (given.size() != 1)
+    throw Error(ErrorKind::input,
+                given.empty()
+                    ? fmt::format("{} has no label, labels or select", reader.name())
+                    : fmt::format("{} has both {} and {}", reader.name(), given[0], given[1]),
+                "say which tets it covers: label = 1, labels = [1, 2], or select = { box = { min "
+                "= [0, 0, 0], max = [1, 1, 1] } }",
+                reader.where());
   int label = 0;
   if (reader.integer("label", label)) region.labels = {label};
   reader.integers("labels", region.labels);
-  region.where = reader.where(reader.has("label") ? "label" : "labels");
-  if (region.labels.empty())
+  region.where = reader.where(given[0]);
+  if (reader.has("select")) {
+    const Reader select(*reader.table("select"), fmt::format("'select' of {}", reader.name()),
+                        {&key_tables().select});
+    for (const Key& key : key_tables().select.keys)
+      if (select.has(key.name) && key.name != "box" && key.name != "sphere" &&
+          key.name != "half_space")
+        select.fail(key.name, fmt::format("{} selects nodes", select.called(key.name)),
+                    "a region takes the tets whose centroid lies in a box, a sphere or a "
+                    "half_space");
+    region.select = parse_selection(reader, "select");
+  } else if (region.labels.empty())
     reader.fail("labels", fmt::format("{} is empty", reader.called("labels")),
                 "say which of the mesh's labels it covers: labels = [1, 2]");
   region.material = parse_material(reader, base);

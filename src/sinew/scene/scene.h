@@ -87,11 +87,13 @@ struct Selection {
   Location where;               // for messages
 };
 
+// Tets with a material of their own: by the mesh's labels, or by place.
 struct SceneRegion {
   std::string name;
-  std::vector<int> labels;  // labels of the mesh
-  Material material;        // the body's, with the values that the region overrides
-  Location where;           // of the labels
+  std::vector<int> labels;          // labels of the mesh
+  std::optional<Selection> select;  // tets whose centroid lies in its box, sphere, half-space
+  Material material;                // the body's, with the values that the region overrides
+  Location where;                   // of the labels or the selection
 };
 
 struct SceneBody {

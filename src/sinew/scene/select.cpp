@@ -77,17 +77,7 @@ class Selector {
   }
 
   void by_places() {
-    if (const auto& box = select_.box)
-      keep([&](const Vec3& x) {
-        return (x.array() >= box->min.array() - tolerance_).all() &&
-               (x.array() <= box->max.array() + tolerance_).all();
-      });
-    if (const auto& sphere = select_.sphere)
-      keep([&](const Vec3& x) {
-        return (x - sphere->center).norm() <= sphere->radius + tolerance_;
-      });
-    if (const auto& half = select_.half_space)
-      keep([&](const Vec3& x) { return half->normal.dot(x - half->point) >= -tolerance_; });
+    keep([&](const Vec3& x) { return in_places(select_, x, tolerance_); });
     if (const auto& side = select_.side) {
       const double depth = side->depth.value_or(1e-6 * placed_.diagonal()) + tolerance_;
       const double edge = side->upper ? placed_.high[side->axis] : placed_.low[side->axis];
@@ -174,6 +164,17 @@ class Selector {
 };
 
 }  // namespace
+
+bool in_places(const Selection& select, const Vec3& x, double tolerance) {
+  if (const auto& box = select.box; box && ((x.array() < box->min.array() - tolerance).any() ||
+                                            (x.array() > box->max.array() + tolerance).any()))
+    return false;
+  if (const auto& sphere = select.sphere;
+      sphere && (x - sphere->center).norm() > sphere->radius + tolerance)
+    return false;
+  const auto& half = select.half_space;
+  return !half || half->normal.dot(x - half->point) >= -tolerance;
+}
 
 std::vector<Index> select_nodes(const PlacedBody& body, const Selection& select,
                                 const std::string& what) {

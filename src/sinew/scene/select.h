@@ -15,4 +15,8 @@ namespace sinew {
 std::vector<Index> select_nodes(const PlacedBody& body, const Selection& select,
                                 const std::string& what);
 
+// Whether a point lies in the selection's box, sphere and half-space, as far as it has them.
+// tolerance [m]: what counts as inside.
+bool in_places(const Selection& select, const Vec3& x, double tolerance);
+
 }  // namespace sinew

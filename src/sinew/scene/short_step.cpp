@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
 #include <vector>
 
 #include "sinew/mesh/doctor.h"
 #include "sinew/mesh/quality.h"
 #include "sinew/scene/place.h"
+#include "sinew/scene/regions.h"
 
 namespace sinew {
 namespace {
@@ -37,12 +37,9 @@ double wave_time(const std::array<Vec3, 4>& x, const Material& m) {
 
 std::optional<ShortStep> find_short_step(const PlacedBody& placed) {
   const TetMesh& mesh = placed.mesh;
-  std::map<int, const Material*> region;
-  for (const SceneRegion& r : placed.body->regions)
-    for (const int label : r.labels) region[label] = &r.material;
+  const std::vector<int> region = regions_of_tets(placed);
   const auto material = [&](std::size_t t) -> const Material& {
-    const auto found = region.find(mesh.tet_label.empty() ? 0 : mesh.tet_label[t]);
-    return found == region.end() ? placed.body->material : *found->second;
+    return region[t] < 0 ? placed.body->material : placed.body->regions[uz(region[t])].material;
   };
   std::vector<double> times;
   std::size_t worst = 0;
@@ -57,7 +54,6 @@ std::optional<ShortStep> find_short_step(const PlacedBody& placed) {
   std::nth_element(times.begin(), middle, times.end());
   if (!(shortest > 0.0) || *middle < much_shorter * shortest) return std::nullopt;
   const std::array<Vec3, 4> x = corners_of(mesh, mesh.tets[worst]);
-  if (!(radius_ratio(x) < kNearFlat)) return std::nullopt;  // small or stiff: no fault
   if (!(radius_ratio(x) < kNearFlat)) return std::nullopt;  // small or stiff: no fault
   const Vec3 at = (x[0] + x[1] + x[2] + x[3]) / 4.0;
   return ShortStep{

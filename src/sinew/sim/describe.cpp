@@ -211,6 +211,7 @@ DocValue table_of(const BodyDescription& b, const std::string& place) {
       names.push_back(r.name);
       Table region(place);
       region.put_all("labels", r.labels);
+      if (r.select) region.put_selection("select", *r.select);
       region.put_material(r.material);
       regions.add(r.name, region.take());
     }
