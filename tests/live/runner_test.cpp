@@ -6,6 +6,7 @@
 #include <chrono>
 #include <thread>
 
+#include "sinew/base/cancel.h"
 #include "tests/live/support.h"
 
 namespace sinew::live {
@@ -73,6 +74,60 @@ TEST(Runner, AFloodOfCommandsIsBoundedAndMovesOfOneHandAreOne) {
   }
   EXPECT_TRUE(soon([&] { return runner.post(Play{false}); }));
   SUCCEED() << dropped << " dropped";
+}
+
+// A scene that opens when `go` is set, or is cancelled.
+Open slow_scene(const std::atomic<bool>& go) {
+  return {[&go] {
+    while (!go) stop_if_cancelled();
+    return test::hanging_box({"box.young=3e4"});
+  }};
+}
+
+TEST(Runner, TheSceneBeforeRunsOnWhileAnotherIsOpened) {
+  Runner runner(test::hanging_box());
+  std::atomic<bool> go{false};
+  runner.post(Play{true});
+  runner.post(slow_scene(go));
+  runner.post(SetMaterial{"", "", "poisson", "0.3"});  // of the new scene
+  const double time = runner.snapshot().frame->time;
+  EXPECT_TRUE(soon([&] { return runner.snapshot().frame->time > time + 0.05; }));
+  EXPECT_EQ(runner.snapshot().parameters->parts[0].material.poisson, 0.45);
+  go = true;
+  EXPECT_TRUE(soon([&] { return runner.snapshot().parameters->parts[0].material.young == 3e4; }));
+  EXPECT_TRUE(soon([&] { return runner.snapshot().parameters->parts[0].material.poisson == 0.3; }));
+  EXPECT_FALSE(runner.snapshot().status->running);
+}
+
+TEST(Runner, AnOpeningCanBeCancelled) {
+  Runner runner(test::hanging_box());
+  const std::atomic<bool> never{false};
+  runner.post(Play{true});
+  runner.post(slow_scene(never));
+  EXPECT_TRUE(soon([&] { return runner.snapshot().frame->time > 0.05; }));
+  runner.post(Cancel{});
+  EXPECT_TRUE(soon([&] { return runner.snapshot().status->errors == 1; }));
+  EXPECT_NE(runner.snapshot().status->error.find("the opening was cancelled"), std::string::npos);
+  EXPECT_TRUE(runner.snapshot().status->running);
+  const double time = runner.snapshot().frame->time;
+  EXPECT_TRUE(soon([&] { return runner.snapshot().frame->time > time; }));
+}
+
+TEST(Runner, AnotherSceneTakesThePlaceOfOneThatIsBeingOpened) {
+  Runner runner(test::hanging_box());
+  const std::atomic<bool> never{false}, now{true};
+  runner.post(slow_scene(never));
+  std::this_thread::sleep_for(5ms);
+  runner.post(slow_scene(now));
+  EXPECT_TRUE(soon([&] { return runner.snapshot().parameters->parts[0].material.young == 3e4; }));
+  EXPECT_EQ(runner.snapshot().status->errors, 0u);
+}
+
+TEST(Runner, EndsWhileASceneIsBeingOpened) {
+  const std::atomic<bool> never{false};
+  Runner runner(test::hanging_box());
+  runner.post(slow_scene(never));
+  std::this_thread::sleep_for(5ms);
 }
 
 TEST(Runner, EndsInTheMiddleOfSlowFrames) {

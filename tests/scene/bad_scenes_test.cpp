@@ -176,11 +176,13 @@ const std::vector<Bad>& bad_scenes() {
        "  remedy: name a mesh file, relative to the scene's folder"},
       {BEAM "[body.beam.region.a]\nyoung = 1\n",
        "scene.toml:3:1: [body.beam.region.a] has no label, labels or select\n"
-       "  remedy: say which tets it covers: label = 1, labels = [1, 2], or select = { box = { min = "
+       "  remedy: say which tets it covers: label = 1, labels = [1, 2], or select = { box = { min "
+       "= "
        "[0, 0, 0], max = [1, 1, 1] } }"},
       {BEAM "[body.beam.region.a]\nlabel = 1\nlabels = [2]\n",
        "scene.toml:3:1: [body.beam.region.a] has both label and labels\n"
-       "  remedy: say which tets it covers: label = 1, labels = [1, 2], or select = { box = { min = "
+       "  remedy: say which tets it covers: label = 1, labels = [1, 2], or select = { box = { min "
+       "= "
        "[0, 0, 0], max = [1, 1, 1] } }"},
       {BEAM "[body.beam.region.a]\nlabel = 1\n[body.beam.region.b]\nlabels = [2, 1]\n",
        "scene.toml:6:10: label 1 of [body.beam] is in region 'a' and in region 'b'\n"

@@ -164,6 +164,23 @@ test("a scene of the gallery is opened, by who has the controls", () =>
     assert.match(await page.title(), /twist/i);
   }));
 
+test("the scene before runs on while another is opened, and the opening can be cancelled", () =>
+  visit(browser, server.url, SIZE, async (page) => {
+    const { opened } = await state(page, "scene");
+    await run(page, 0.1);
+    const scene = "[body.block]\nshape = \"box\"\nsize = [0.1, 0.1, 0.1]\ncells = [70, 70, 70]\n[pin.top]\nselect = { side = \"+y\" }\n";
+    await drop(page, [["large block.toml", scene]]);
+    await page.waitForSelector("#cancel-opening:visible");
+    const time = await page.evaluate(() => window.sinew.state.time);
+    await until(page, (t) => window.sinew.state.time > t, time);
+    await picture(page, "opening");
+    await page.click("#cancel-opening");
+    await until(page, () => document.querySelector("#opening").hidden);
+    await complaint(page, /the opening was cancelled/);
+    assert.equal((await state(page, "scene")).opened, opened);
+    await pause(page);
+  }));
+
 test("dropped files are opened, or it is said why not", () =>
   visit(browser, server.url, SIZE, async (page) => {
     const { opened } = await state(page, "scene");

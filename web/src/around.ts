@@ -27,7 +27,7 @@ export class Around {
   readonly buttons: HTMLElement[];
   readonly keys: Record<string, () => void>;
   private readonly notice = new Notice();
-  private readonly opening = new Opening();
+  private readonly opening = new Opening(() => void this.inside.send({ type: "cancel" }));
   private readonly gallery: Gallery;
   readonly hint: Hint;
   private readonly save: SaveMenu;

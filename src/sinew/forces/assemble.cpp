@@ -6,6 +6,7 @@
 #include <cmath>
 #include <span>
 
+#include "sinew/base/cancel.h"
 #include "sinew/base/error.h"
 #include "sinew/forces/gradient_cells.h"
 #include "sinew/forces/laws.h"
@@ -175,10 +176,14 @@ void add_body(Model& model, const BodySpec& spec) {
   }
 
   body.springs.begin = model.spring_count();
+  stop_if_cancelled();
   add_springs(model, body, spec);
+  stop_if_cancelled();
   body.springs.end = model.spring_count();
   add_network(model, spec.mesh, spec.materials, spec.tet_region, body.nodes.begin);
+  stop_if_cancelled();
   add_volume_terms(model, body, spec.materials);
+  stop_if_cancelled();
   add_viscosity(model, spec.mesh, spec.materials, spec.tet_region, body.nodes.begin,
                 longest_side(spec.mesh.nodes, spec.rotation));
   model.first_attachment = model.spring_count();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "sinew/base/cancel.h"
 #include "sinew/mesh/edges.h"
 
 namespace sinew {
@@ -35,6 +36,7 @@ void for_each_edge_cell(const TetMesh& mesh, std::span<const std::array<Vec3, 4>
   EdgeCell cell;
   std::vector<int> regions;
   for (Index e = 0; e < table.edge_count(); ++e) {
+    stop_if_cancelled();
     const std::span<const Index> around = table.tets_of(e);
     regions.clear();
     for (const Index t : around) {

@@ -5,6 +5,7 @@
 #include <map>
 #include <numeric>
 
+#include "sinew/base/cancel.h"
 #include "sinew/base/error.h"
 #include "sinew/base/sort_by_key.h"
 #include "sinew/forces/packed.h"
@@ -73,12 +74,14 @@ class Packer {
         (inside ? springs[uz(patch)] : loose).push_back(s);
       }
     }
+    stop_if_cancelled();
     weigh_cells();
     std::vector<std::vector<EdgeRing>> rings(patches);
     parallel_tasks(to_.patch_count(), [&](Index p) {
       rings[uz(p)] = cut_into_edge_rings(model_.tets, tets[uz(p)], model_.tet_region, longest_ring);
     });
     for (std::size_t p = 0; p < patches; ++p) {
+      stop_if_cancelled();
       begin_patch(static_cast<Index>(p));
       group_by_length(std::move(rings[p]),
                       [&](std::size_t length, std::span<const EdgeRing> group) {
@@ -97,6 +100,7 @@ class Packer {
     }
     pack_loose(loose);
     list_slots();
+    stop_if_cancelled();
     pack_network();
     allocate_scratch();
   }

@@ -1,5 +1,7 @@
 #include "sinew/io/text_reader.h"
 
+#include "sinew/base/cancel.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -83,6 +85,7 @@ std::string_view TextReader::peek() {
 }
 
 void TextReader::start_value(const Wanted& wanted) {
+  stop_if_cancelled();
   skip_blanks();
   value_ = at_;
   value_line_ = line_;

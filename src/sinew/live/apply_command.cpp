@@ -71,13 +71,13 @@ void Session::execute(const Reset&) {
 
 // The current scene stays unchanged until the new one is built.
 void Session::execute(const Load& c) {
-  const bool behind = std::exchange(fell_behind_, false);
-  try {
-    simulation_ = simulate(c.scene);
-  } catch (...) {
-    fell_behind_ = behind;
-    throw;
-  }
+  adopt(build(c.scene));
+}
+
+void Session::adopt(Simulation simulation) {
+  simulation_ = std::move(simulation);
+  // Its steps were chosen for the pace of the scene before.
+  if (fell_behind_.exchange(false)) world().choose_steps();
   running_ = false;
   grabs_ = {};
   ball_ = {};

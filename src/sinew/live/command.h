@@ -31,7 +31,7 @@ struct Load {
   Scene scene;
 };
 
-// The same for a scene that takes long to read: the simulation's thread reads it.
+// The same for a scene that takes long to read. A Runner opens it on another thread.
 struct Open {
   std::function<Scene()> scene;  // may throw Error
 };

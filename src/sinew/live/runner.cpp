@@ -1,6 +1,8 @@
 #include "sinew/live/runner.h"
 
+#include <algorithm>
 #include <exception>
+#include <iterator>
 #include <utility>
 
 #include "sinew/base/error.h"
@@ -98,6 +100,14 @@ bool Runner::post(Command command) {
   const bool interrupts = cancels || is_of_hand(command);
   {
     const std::lock_guard lock(mutex_);
+    if (opening_now_ && (cancels || std::holds_alternative<Open>(command))) {
+      cancel_opening_ = true;
+      if (cancels) {
+        commands_.clear();  // they were for that scene
+        wake_.notify_one();
+        return true;
+      }
+    }
     if (!commands_.empty() && replaces(command, commands_.back())) {
       commands_.back() = std::move(command);
     } else if (commands_.size() < most_commands) {
@@ -117,37 +127,102 @@ Snapshot Runner::snapshot() const {
   return snapshot_;
 }
 
+namespace {
+// Reports what the act throws.
+template <typename Act>
+void guarded(Session& session, const Act& act) {
+  try {
+    act();
+  } catch (const Error& e) {
+    session.report(e);
+  } catch (const std::exception& e) {  // for example no memory for a finer mesh
+    session.report(Error(ErrorKind::internal, e.what(), "a smaller scene"));
+  }
+}
+}  // namespace
+
+// Applies the commands up to the next scene to open, and leaves the others.
 void Runner::apply(std::deque<Command>& commands) {
-  for (const Command& command : commands) {
-    try {
-      session_.apply(command);
-    } catch (const Error& e) {
-      session_.report(e);
-    } catch (const std::exception& e) {  // for example no memory for a finer mesh
-      session_.report(Error(ErrorKind::internal, e.what(), "a smaller scene"));
-    }
+  while (!commands.empty() && !opening_) {
+    const Command command = std::move(commands.front());
+    commands.pop_front();
+    guarded(session_, [&] {
+      if (const auto* scene = std::get_if<Open>(&command)) {
+        open(*scene);
+      } else {
+        session_.apply(command);
+      }
+    });
   }
   status_at_ = {};
+}
+
+void Runner::wake() {
+  { const std::lock_guard lock(mutex_); }
+  wake_.notify_one();
+}
+
+void Runner::open(Open command) {
+  std::erase_if(cancelled_, [](const auto& o) { return o->ended(); });
+  constexpr std::size_t most_cancelled = 2;
+  if (cancelled_.size() >= most_cancelled)
+    throw Error(ErrorKind::usage, "the scenes that were cancelled before are still being closed",
+                "open it again in a few seconds");
+  opening_ = std::make_unique<Opening>(
+      std::move(command), [this](const Scene& scene) { return session_.build(scene); },
+      [this] { wake(); });
+  const std::lock_guard lock(mutex_);
+  opening_now_ = true;
+}
+
+// Takes up the opened scene, or the error.
+void Runner::end_opening(bool cancelled) {
+  std::unique_ptr<Opening> opening = std::move(opening_);
+  bool replaced = false;  // by another scene to open
+  {
+    const std::lock_guard lock(mutex_);
+    opening_now_ = cancel_opening_ = false;
+    replaced = std::any_of(commands_.begin(), commands_.end(),
+                           [](const Command& c) { return std::holds_alternative<Open>(c); });
+  }
+  status_at_ = {};
+  if (!cancelled) return guarded(session_, [&] { session_.adopt(opening->take()); });
+  opening->cancel();
+  cancelled_.push_back(std::move(opening));
+  if (!replaced)
+    session_.report(
+        Error(ErrorKind::usage, "the opening was cancelled", "the scene before is still here"));
 }
 
 void Runner::work() {
   ClockPace pace;
   while (true) {
     std::deque<Command> commands;
+    bool ends = false, cancelled = false;  // the opening
     {
       std::unique_lock lock(mutex_);
-      const auto called = [&] { return quit_ || !commands_.empty(); };
+      const auto called = [&] {
+        return quit_ || (opening_ ? opening_->ended() || cancel_opening_ : !commands_.empty());
+      };
       if (!session_.running()) {
         wake_.wait(lock, called);
       } else if (pace.fits(session_.time_scale())) {
         wake_.wait_until(lock, pace.due(session_.time()), called);
       }
       if (quit_) return;
-      commands.swap(commands_);
+      if (!opening_) commands.swap(commands_);
       interrupted_ = false;
+      ends = opening_ && (opening_->ended() || cancel_opening_);
+      cancelled = cancel_opening_;
     }
     const double before = session_.time();
+    if (ends) end_opening(cancelled);
     if (!commands.empty()) apply(commands);
+    if (!commands.empty()) {  // behind a scene to open
+      const std::lock_guard lock(mutex_);
+      commands_.insert(commands_.begin(), std::make_move_iterator(commands.begin()),
+                       std::make_move_iterator(commands.end()));
+    }
     if (!session_.running()) {
       pace.stop();
       rate_ = 0.0;

@@ -1,5 +1,6 @@
 // Runs a Session on a separate thread at the pace of the clock. It takes commands, and gives the
-// newest frame and status at any time.
+// newest frame and status at any time. A scene is opened on another thread while the one before
+// runs on; the commands that follow wait for it.
 #pragma once
 
 #include <atomic>
@@ -9,7 +10,9 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <vector>
 
+#include "sinew/live/opening.h"
 #include "sinew/live/session.h"
 
 namespace sinew::live {
@@ -32,7 +35,8 @@ class Runner {
   Runner& operator=(const Runner&) = delete;
 
   // Queues the command. Of successive moves of one hand, or values of one key, only the last is
-  // kept. Returns false if too many commands wait; this one is then dropped.
+  // kept. Returns false if too many commands wait; this one is then dropped. Cancel ends an
+  // opening, or else the step; another Open ends the one before.
   bool post(Command command);
 
   Snapshot snapshot() const;
@@ -40,6 +44,9 @@ class Runner {
  private:
   void work();
   void apply(std::deque<Command>& commands);
+  void open(Open command);
+  void end_opening(bool cancelled);
+  void wake();
   void publish();
 
   static constexpr std::size_t most_commands = 256;
@@ -54,9 +61,15 @@ class Runner {
 
   mutable std::mutex mutex_;  // for all members below
   std::condition_variable wake_;
+  bool opening_now_ = false;     // opening_ is there
+  bool cancel_opening_ = false;  // Cancel or another Open has come since
   std::deque<Command> commands_;
   Snapshot snapshot_;
   bool quit_ = false;
+
+  // Of the session's thread. Cancelled openings end by themselves.
+  std::unique_ptr<Opening> opening_;
+  std::vector<std::unique_ptr<Opening>> cancelled_;
 
   std::thread thread_;  // last: it uses all of the others
 };

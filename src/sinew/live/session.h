@@ -54,6 +54,12 @@ class Session {
   const Model& model() const { return world().model(); }
   const State& state() const { return world().state(); }
 
+  // The simulation of another scene, for adopt(). May be called by another thread, also while this
+  // one steps; cancelled by a CancelScope of that thread. Throws the errors of the constructor.
+  Simulation build(const Scene& scene) const { return simulate(scene); }
+  // Replaces the scene by one from build(); pauses.
+  void adopt(Simulation simulation);
+
   // Shows the error in status() until the next command that succeeds.
   void report(const Error& error);
 
@@ -113,8 +119,8 @@ class Session {
   std::string limiting() const;
 
   const Session* const leader_;
-  bool fell_behind_ = false;  // with explicit steps, since a value was changed
-  Simulation simulation_;     // stepped as options_for requires, with the two members above
+  std::atomic<bool> fell_behind_{false};  // with explicit steps, since a value was changed
+  Simulation simulation_;  // stepped as options_for requires, with the two members above
   std::shared_ptr<const Topology> topology_;
   std::shared_ptr<const Parameters> parameters_;
   Grabs grabs_;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sinew/base/cancel.h"
 #include "sinew/base/error.h"
 #include "sinew/mesh/doubles.h"
 #include "sinew/mesh/faces.h"
@@ -47,9 +48,13 @@ class Doctor {
     check_empty();
     check_ids();
     check_coordinates();
+    stop_if_cancelled();
     check_tets();
+    stop_if_cancelled();
     check_faces();
+    stop_if_cancelled();
     check_nodes();
+    stop_if_cancelled();
     check_components();
     std::stable_sort(diagnosis_.problems.begin(), diagnosis_.problems.end(),
                      [](const Problem& a, const Problem& b) { return a.kind < b.kind; });

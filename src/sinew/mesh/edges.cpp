@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 
+#include "sinew/base/cancel.h"
 #include "sinew/base/error.h"
 
 namespace sinew {
@@ -49,6 +50,7 @@ EdgeTable build_edges(std::span<const Tet> tets, Index node_count) {
   EdgeTable table;
   table.tets.reserve(keys.size());
   for (Index low = 0; low < node_count; ++low) {
+    stop_if_cancelled();
     const auto begin = keys.begin() + start[uz(low)];
     const auto end = keys.begin() + start[uz(low) + 1];
     std::sort(begin, end);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "sinew/base/cancel.h"
 #include "sinew/base/error.h"
 
 namespace sinew {
@@ -48,6 +49,7 @@ FaceTable build_faces(std::span<const Tet> tets, Index node_count) {
   FaceTable table;
   table.sides.reserve(entries.size());
   for (Index low = 0; low < node_count; ++low) {
+    stop_if_cancelled();
     const auto begin = entries.begin() + start[uz(low)];
     const auto end = entries.begin() + start[uz(low) + 1];
     std::sort(begin, end);

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <set>
 
+#include "sinew/base/cancel.h"
 #include "sinew/contact/colliders.h"
 #include "sinew/contact/contact_surface.h"
 #include "sinew/forces/assemble.h"
@@ -95,6 +96,7 @@ void set_start(const std::vector<PlacedBody>& bodies, Model& model) {
 std::vector<PlacedBody> add_bodies(const Scene& scene, Model& model, BuildReport* report) {
   std::vector<PlacedBody> bodies;
   for (const SceneBody& body : scene.bodies) {
+    stop_if_cancelled();
     PlacedBody placed = place(scene, body);
     placed.first_node = model.node_count();
     if (model.tet_count() + static_cast<std::int64_t>(placed.mesh.tet_count()) > kMaxShapeTets)
@@ -281,10 +283,13 @@ Model build_model(const Scene& scene, BuildReport* report) {
   model.limit_tolerance = scene.limit_tolerance;
   if (const auto& c = scene.contact)
     model.body_contact = BodyContact{c->bodies, c->self, c->friction, c->restitution};
+  stop_if_cancelled();
   build_contact_surface(model);
   std::vector<std::string> warnings = Parts(scene, bodies, model).add();
   build_contact_surface(model);
+  stop_if_cancelled();
   finish(model);
+  stop_if_cancelled();
   refuse_loose_parts(scene, model);
   if (report != nullptr) {
     report->warnings = std::move(warnings);

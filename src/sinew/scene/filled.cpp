@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,8 +16,10 @@
 #include <iterator>
 #include <optional>
 #include <system_error>
+#include <utility>
 #include <vector>
 
+#include "sinew/base/cancel.h"
 #include "sinew/base/hash.h"
 #include "sinew/base/spawn.h"
 #include "sinew/io/file_io.h"
@@ -127,8 +130,15 @@ int run(const std::vector<std::string>& command, std::string& told) {
   if (failure == 0) {
     std::array<char, 512> buffer{};
     ssize_t got = 0;
-    while ((got = read(pipe_ends[0], buffer.data(), buffer.size())) > 0 ||
-           (got < 0 && errno == EINTR)) {
+    bool ended = false;  // by us
+    while (true) {
+      pollfd end_of_pipe = {pipe_ends[0], POLLIN, 0};
+      constexpr int between_looks = 50;  // [ms]
+      const int ready = poll(&end_of_pipe, 1, between_looks);
+      if (is_cancelled() && !std::exchange(ended, true)) kill(child, SIGTERM);
+      if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
+      got = read(pipe_ends[0], buffer.data(), buffer.size());
+      if (got == 0 || (got < 0 && errno != EINTR)) break;
       if (got > 0 && told.size() < longest_message) {
         told.append(buffer.data(), static_cast<std::size_t>(got));
       }
@@ -140,6 +150,7 @@ int run(const std::vector<std::string>& command, std::string& told) {
   int status = 0;
   while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
+  stop_if_cancelled();
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 

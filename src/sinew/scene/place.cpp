@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <numeric>
 
+#include "sinew/base/cancel.h"
 #include "sinew/io/mesh_io.h"
 #include "sinew/io/surface_file.h"
 #include "sinew/mesh/doctor.h"
@@ -107,6 +108,7 @@ void make_sound(PlacedBody& placed) {
   const auto in_file = static_cast<std::size_t>(placed.mesh.node_count());
   const bool is_file = !placed.body->mesh.empty();
   RepairReport report;
+  stop_if_cancelled();
   const std::vector<Index> merged = mend_if_asked(placed);
   try {
     report = repair(placed.mesh, is_file ? placed.source : std::string());

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "sinew/base/cancel.h"
 #include "sinew/base/error.h"
 #include "sinew/mesh/surface.h"
 #include "sinew/scene/overrides.h"
@@ -113,6 +114,7 @@ void World::start(Source source) {
   } else {
     b.run.state = initial_state(*b.model);
   }
+  stop_if_cancelled();
   b.stepping = std::make_unique<Stepping>(options_of(b.source.scene), *b.model, *b.controls, b.run);
   for (const Obstacle& o : b.model->obstacles) b.obstacles.push_back({0, o.name, false, {}});
   replace_by(std::move(b));

@@ -9,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "sinew/base/cancel.h"
 #include "sinew/base/parallel.h"
 #include "sinew/forces/terms.h"
 #include "sinew/forces/viscosity.h"
@@ -99,6 +100,7 @@ Top lanczos(const Operator& op, Field q, int most) {
   std::vector<double> alpha, beta;
   Field y(q.size());
   while (top.steps < most) {
+    stop_if_cancelled();
     basis.push_back(q);
     op(q, y);
     const double a = dot(q, y);
