@@ -179,7 +179,30 @@ class Contacts(CaseTest):
         self.assertLess(s["static"]["newton_steps"], 3000)
 
 
+    # The hard ball goes into the slab by 35 of 50 mm and comes out: the account says what led nodes
+    # out of it.
+    def test_a_ball_pressed_deep(self):
+        s = self.summary("behaviour/press-deep.toml")
+        self.assertEqual(s["status"], "finished")
+        self.assertLess(s["energy"]["peak_drift"], 0.01 * s["energy"]["peak"])
+        self.assertLess(s["energy"]["elastic"], 1e-6)
+        self.assertTrue(any("contacts put in" in w for w in s["warnings"]), s["warnings"])
+
+
 class Rest(CaseTest):
+    # Uniaxial stretch by 2: half width 2.1737 mm, 2942 J, 25.88 kN; the clamped ends stiffen.
+    def test_a_tendon_drawn_to_twice_its_length(self):
+        s = self.summary("behaviour/tendon.toml")
+        self.near(s["probes"]["mid"]["position"][0], 2.1737e-3, 0.003)
+        self.near(s["energy"]["elastic"], 2942, 0.01)
+        self.near(-s["pins"]["b"]["force"][2], 25.88e3, 0.01)
+        self.assertLess(abs(s["probes"]["mid"]["position"][1]), 1e-6)
+
+    def test_a_tendon_too_near_to_incompressible(self):
+        result = self.run_sinew("run", DATA / "behaviour/tendon.toml", "--no-output", "--set",
+                                "t.poisson=0.4999", "--set", "output.fps=4", code=DIVERGED)
+        self.assertIn("take poisson = 0.499 or less", result.stderr)
+
     def test_a_body_on_a_body(self):
         s = self.summary("behaviour/static-stack.toml")
         self.near(s["probes"]["upper"]["position"][1], 0.0742, 0.002)

@@ -175,6 +175,18 @@ int StaticSolver::move_pins_to(const Controls& controls, double start_time, doub
 void StaticSolver::throw_no_rest(const Controls& controls, double time,
                                  const StaticOptions& options, const State& start,
                                  const StepReport& report) const {
+  const Field loads = outer_forces(model_, controls, start);
+  if (dot(loads, loads) == 0.0)  // only pins move: no load has a limit
+    throw Error(
+        ErrorKind::diverged,
+        fmt::format("no rest state: {} Newton steps towards the pins at {:.4g} s were taken; at "
+                    "the last one the forces on the free nodes were {:.2g} of what they carry",
+                    report.newton, time, report.residual),
+        softened_
+            ? "the bulk modulus is far above the shear modulus: take poisson = 0.499 or less; "
+              "or a larger output.fps, or stepper = \"verlet\""
+            : "let the pins move less from frame to frame (a larger output.fps), or take "
+              "stepper = \"verlet\" to see the motion");
   std::string found;
   const LimitLoad limit = options.finds_limit_load
                               ? find_limit_load(model_, controls, time, options, start)
