@@ -95,7 +95,7 @@ def inclusion_of(n, stiff):
 
 def inclusion(runner):
     for ratio in (10, 1000):
-        sizes = (4, 8, 12)
+        sizes = (4, 6, 8)
         found = [runner.remember(f"inclusion-{ratio}-{n}",
                                  lambda n=n, r=ratio: inclusion_of(n, 10e3 * r)) for n in sizes]
         for quantity, values in zip(("force", "bulge"), zip(*found)):
@@ -129,7 +129,7 @@ def skin_of(n):
 
 
 def skin(runner):
-    sizes = (1, 2, 3)
+    sizes = (1, 2)
     found = [runner.remember(f"skin-{n}", lambda n=n: skin_of(n)) for n in sizes]
     for quantity, values in zip(("force", "beside"), zip(*found)):
         yield extrapolate("", quantity, sizes, values, "n = {}")
