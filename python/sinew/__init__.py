@@ -1,0 +1,31 @@
+"""Sinew: soft tissue as a mass-spring system on tetrahedral meshes.
+
+    import sinew
+
+    scene = sinew.Scene()
+    scene.body("beam", shape="beam", cells=[4, 4, 16], young=150e3, poisson=0.45)
+    scene.pin("wall", select={"side": "-z"})
+    scene.probe("tip", select={"side": "+z"})
+    sim = sinew.static(scene)
+    print(sim.probes["tip"].displacement)  # [m]
+
+Units are SI everywhere. Start with Scene, Simulation and run(); help() has the rest.
+"""
+
+from ._sinew import version as __version__
+from .errors import (DivergedError, Error, InputError, InternalError, IoError, UnstableError,
+                     UsageError)
+from .handles import (Body, ContactPoint, Event, Grab, Material, Motion, Obstacle, Pin, Pose, Probe,
+                      Wrench)
+from .scene import Scene
+from .simulation import Simulation
+from .tasks import (ConvergeResult, LawIdentity, Moduli, RunResult, Trend, ValidateResult,
+                    converge, identify, read_table, resume, run, static, validate)
+
+__all__ = [
+    "Body", "ContactPoint", "ConvergeResult", "DivergedError", "Error", "Event", "Grab",
+    "InputError", "InternalError", "IoError", "LawIdentity", "Material", "Moduli", "Motion",
+    "Obstacle", "Pin", "Pose", "Probe", "RunResult", "Scene", "Simulation", "Trend",
+    "UnstableError", "UsageError", "ValidateResult", "Wrench", "__version__", "converge",
+    "identify", "read_table", "resume", "run", "static", "validate",
+]

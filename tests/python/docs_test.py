@@ -1,0 +1,43 @@
+"""The Python of the documentation runs: the blocks of a page in order, in one namespace."""
+
+import contextlib
+import io
+import os
+import re
+import unittest
+
+import sinew
+from python_support import ROOT, PythonTest
+
+
+class DocsTest(PythonTest):
+    def test_pages(self):
+        before = os.getcwd()
+        os.chdir(self.dir)
+        self.addCleanup(os.chdir, before)
+        for page in ("docs/python.md",):
+            text = (ROOT / page).read_text(encoding="utf-8")
+            blocks = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+            self.assertGreater(len(blocks), 2)
+            names = {}
+            for block in blocks:
+                with self.subTest(page, block=block[:60]), contextlib.redirect_stdout(io.StringIO()):
+                    exec(compile(block, page, "exec"), names)  # pylint: disable=exec-used
+
+    def test_every_public_name_is_documented(self):
+        for name in sinew.__all__:
+            thing = getattr(sinew, name)
+            if name == "__version__":
+                continue
+            self.assertTrue(thing.__doc__, name)
+            members = vars(thing).items() if isinstance(thing, type) else ()
+            for member, value in members:
+                is_code = callable(value) or isinstance(value, (property, classmethod))
+                if member.startswith("_") or not is_code:
+                    continue
+                value = value.fget if isinstance(value, property) else value
+                self.assertTrue(getattr(value, "__doc__", None), f"{name}.{member}")
+
+
+if __name__ == "__main__":
+    unittest.main()
