@@ -21,7 +21,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 BUILD = pathlib.Path(os.environ["SINEW_BUILD"])
 CMAKE = os.environ.get("CMAKE", "cmake")
 CXX = os.environ.get("CXX", "g++")
-EXAMPLES = ("hello", "tool_in_a_loop", "own_mesh", "two_worlds")
+EXAMPLES = ("hello", "tool_in_a_loop", "own_mesh", "two_worlds", "in_c")
 NUMBER = r"(-?\d+(?:\.\d+)?)"
 # Other libraries' headers that a program with Sinew does not need.
 INSIDE = ("eigen", "tbb", "fmt", "hwy", "pugixml", "toml", "xxhash", "nlohmann")
@@ -72,6 +72,17 @@ def check_two_worlds(text):
     check(text.endswith("alone: the same bits\n"), text)
 
 
+def check_in_c(text):
+    match = re.fullmatch(rf"0\.050 s: {NUMBER} N on the ball, the slab {NUMBER} mm deep\n", text)
+    check(match and float(match[1]) > 0.01 and 3.0 < float(match[2]) < 5.0, text)
+
+
+def check_by_ctypes(text):
+    lows = [float(m) for m in re.findall(rf"the lowest of 125 nodes at {NUMBER} mm", text)]
+    check(len(lows) == 5 and min(lows) < lows[0] < -50.0, f"it sags:\n{text}")
+    check("-1" in text.splitlines()[-1], f"the error's text:\n{text}")
+
+
 def run_examples(find, env=None):
     """Runs those whose program find(name) gives, and checks what they print."""
     for name in EXAMPLES:
@@ -89,7 +100,8 @@ def by_find_package(prefix, folder):
         "-DCMAKE_FIND_PACKAGE_NO_PACKAGE_REGISTRY=ON", "-DCMAKE_CXX_FLAGS=-Wall -Wextra -Werror")
     for entry in json.loads((build / "compile_commands.json").read_text()):
         command = entry["command"]
-        check(re.search(r"-std=(c|gnu)\+\+2[0-9a-z]", command), f"C++20 comes along: {command}")
+        if not entry["file"].endswith(".c"):
+            check(re.search(r"-std=(c|gnu)\+\+2[0-9a-z]", command), f"C++20 comes along: {command}")
         for flag in OUR_FLAGS:
             check(flag not in command, f"{flag} stays ours: {command}")
         check(str(ROOT) not in command, f"nothing of the source tree: {command}")
@@ -124,6 +136,9 @@ def check_headers(prefix, folder):
         run(CXX, "-std=c++20", "-fsyntax-only", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow",
             "-Wconversion", "-Werror", "-I", include, source)
         paths = run(CXX, "-std=c++20", "-M", "-I", include, source).replace("\\\n", " ").split()
+        if header.name in ("sinew.h", "capi.h"):  # of C, too
+            run(CXX.replace("g++", "gcc"), "-std=c99", "-fsyntax-only", "-Wall", "-Wextra",
+                "-Wpedantic", "-Werror", "-x", "c", "-I", include, source)
         for path in paths:
             check(not any(part.startswith(INSIDE) for part in pathlib.Path(path).parts[2:-1]),
                   f"{header.name} needs {path}")
@@ -142,6 +157,7 @@ def check_symbols(prefix):
     for line in shown:
         name = line.split(maxsplit=2)[2]
         match = re.match(r"(?:(?:typeinfo|typeinfo name|vtable) for )?sinew::(\w+)", name)
+        match = match or re.fullmatch(r"(sinew_\w+)", name)  # of C
         check(match and match[1] in marked, f"{name} is not of the interface ({sorted(marked)})")
     dynamic = run("readelf", "-d", library)
     check("[libsinew.so.0]" in dynamic, "its SONAME")
@@ -180,6 +196,8 @@ def shared(folder):
     prefix = folder / "prefix"
     run(CMAKE, "--install", host, "--prefix", prefix)
     check_symbols(prefix)
+    library = next(iter(prefix.rglob("libsinew.so.0")))
+    check_by_ctypes(run(sys.executable, ROOT / "examples" / "by_ctypes" / "by_ctypes.py", library))
     by_find_package(prefix, folder)
     by_pkg_config(prefix, folder)
 
