@@ -16,11 +16,11 @@ class DocsTest(PythonTest):
         os.symlink(ROOT / "scenes", self.dir / "scenes")
         os.chdir(self.dir)
         self.addCleanup(os.chdir, before)
-        for page, least in (("docs/python.md", 3), ("README.md", 1)):
+        for page, least in (("docs/python.md", 3), ("docs/study.md", 2), ("README.md", 1)):
             text = (ROOT / page).read_text(encoding="utf-8")
             blocks = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
             self.assertGreaterEqual(len(blocks), least)
-            names = {}
+            names = {"__name__": "__main__"}
             for block in blocks:
                 with self.subTest(page, block=block[:60]), contextlib.redirect_stdout(io.StringIO()):
                     exec(compile(block, page, "exec"), names)  # pylint: disable=exec-used
