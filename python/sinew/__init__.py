@@ -13,6 +13,8 @@ Units are SI everywhere. Start with Scene, Simulation and run(); help() has the 
 """
 
 from ._sinew import version as __version__
+from . import study
+from .calibration import Calibration, Estimate, calibrate, read_curve
 from .errors import (DivergedError, Error, InputError, InternalError, IoError, UnstableError,
                      UsageError)
 from .handles import (Body, ContactPoint, Event, Grab, Material, Motion, Obstacle, Pin, Pose, Probe,
@@ -23,9 +25,10 @@ from .tasks import (ConvergeResult, LawIdentity, Moduli, RunResult, Trend, Valid
                     converge, identify, read_table, resume, run, static, validate)
 
 __all__ = [
-    "Body", "ContactPoint", "ConvergeResult", "DivergedError", "Error", "Event", "Grab",
-    "InputError", "InternalError", "IoError", "LawIdentity", "Material", "Moduli", "Motion",
-    "Obstacle", "Pin", "Pose", "Probe", "RunResult", "Scene", "Simulation", "Trend",
-    "UnstableError", "UsageError", "ValidateResult", "Wrench", "__version__", "converge",
-    "identify", "read_table", "resume", "run", "static", "validate",
+    "Body", "Calibration", "ContactPoint", "ConvergeResult", "DivergedError", "Error",
+    "Estimate", "Event", "Grab", "InputError", "InternalError", "IoError", "LawIdentity",
+    "Material", "Moduli", "Motion", "Obstacle", "Pin", "Pose", "Probe", "RunResult", "Scene",
+    "Simulation", "Trend", "UnstableError", "UsageError", "ValidateResult", "Wrench",
+    "__version__", "calibrate", "converge", "identify", "read_curve", "read_table", "resume",
+    "run", "static", "study", "validate",
 ]

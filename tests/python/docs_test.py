@@ -16,7 +16,7 @@ class DocsTest(PythonTest):
         os.symlink(ROOT / "scenes", self.dir / "scenes")
         os.chdir(self.dir)
         self.addCleanup(os.chdir, before)
-        for page, least in (("docs/python.md", 3), ("docs/study.md", 2), ("README.md", 1)):
+        for page, least in (("docs/python.md", 3), ("docs/study.md", 2), ("docs/calibrate.md", 1), ("README.md", 1)):
             text = (ROOT / page).read_text(encoding="utf-8")
             blocks = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
             self.assertGreaterEqual(len(blocks), least)
