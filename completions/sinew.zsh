@@ -30,6 +30,7 @@ _sinew() {
         'repair:Join double nodes, remove flat tets'
         'identify:Measure what each law makes of a material on a mesh'
         'converge:See whether the answer depends on the mesh'
+        'study:Run a scene many times with other values'
         'validate:Compare the laws with reference values'
         'materials:Show the tissue library'
         'bench:Measure what Sinew costs on this machine'
@@ -112,6 +113,13 @@ _sinew() {
             '(-q --quiet)'{-q,--quiet}'[Print errors only]' \
             '--threads[Threads to use]:count:' '--help[Show help]' \
             '1:scene:_files -g "*.toml(-.)"'
+          ;;
+        study)
+          _arguments '(-o --out)'{-o,--out}'[Folder of the study]:folder:_files -/' \
+            '--on[Where the runs are done]:engine:(local slurm tcp://)' \
+            '--workers[Processes, or tasks of the job array]:count:' '--json[Print JSON]' \
+            '(-q --quiet)'{-q,--quiet}'[Print errors only]' '--help[Show help]' \
+            '1:study:_files -g "*.toml(-.)"'
           ;;
         validate)
           _arguments '--dir[Folder of the cases]:folder:_files -/' \

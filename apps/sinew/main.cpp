@@ -66,6 +66,7 @@ int run(int argc, char** argv, int& output_failure) {
   add_identify(app);
   add_validate(app, status);
   add_converge(app, status);
+  add_study(app);
   add_bench(app, status);
   add_completion(app);
   try {

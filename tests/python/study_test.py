@@ -191,7 +191,7 @@ class StudyTest(PythonTest):
     def test_slurm_script(self):
         text = Slurm(2).script(pathlib.Path("/x y"), [[0, 2], [1]])
         self.assertIn("0) numbers='0,2' ;;", text)
-        self.assertIn("-m sinew.study '/x y'", text)
+        self.assertIn("-m sinew.study --runs '/x y'", text)
         result = subprocess.run(["bash", "-n"], input=text, text=True, check=False)
         self.assertEqual(result.returncode, 0)
 
@@ -199,7 +199,8 @@ class StudyTest(PythonTest):
         study = self.study()
         study._prepare(self.dir / "s", design_of("grid", VARY, 0, 0))
         for numbers in ("0,2,4", "1,3,5", "0,1"):
-            subprocess.run([sys.executable, "-m", "sinew.study", str(self.dir / "s"), numbers],
+            subprocess.run([sys.executable, "-m", "sinew.study", "--runs",
+                            str(self.dir / "s"), numbers],
                            check=True)
         self.check(study.run(self.dir / "s"))
 

@@ -145,7 +145,7 @@ class Slurm:
                           for i, share in enumerate(shares))
         return (f"#!/bin/bash\n{self.setup}\ncase $SLURM_ARRAY_TASK_ID in\n{cases}\nesac\n"
                 f"export PYTHONPATH={shlex.quote(os.pathsep.join(sys.path))}\n"
-                f"exec {shlex.quote(sys.executable)} -m sinew.study {shlex.quote(str(folder))} "
+                f"exec {shlex.quote(sys.executable)} -m sinew.study --runs {shlex.quote(str(folder))} "
                 "\"$numbers\"\n")
 
     def rows(self, task: Task, jobs: Sequence[Job], folder: pathlib.Path) -> Iterator[Row]:
