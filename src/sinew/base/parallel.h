@@ -27,7 +27,8 @@ inline Range block(Index b, Index n) {
 template <typename F>
 void parallel_blocks(Index n, const F& f) {
   const Index blocks = block_count(n);
-  if (blocks <= 2) {
+  constexpr Index few = 4;  // waking threads for them would take longer
+  if (blocks <= few) {
     for (Index b = 0; b < blocks; ++b) f(b, block(b, n));
     return;
   }

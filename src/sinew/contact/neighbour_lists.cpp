@@ -154,30 +154,33 @@ double NeighbourLists::used_of(NearPart& near, double range, double skin, double
   return std::max(used, near.before);
 }
 
-// Builds new lists. Returns how much of their skin the step uses, or infinity if a list is valid
-// for this step only.
-double NeighbourLists::build(const std::vector<NearPart*>& stale, double skin, const Moves& moves) {
-  const auto prepare = [&](Index p) {
-    SurfacePart& part = parts_[uz(p)];
+// Builds the stale lists of all pairs at once: those of one pair are too few for several threads.
+void NeighbourLists::build(const Moves& moves) {
+  if (stale_.empty()) return;
+  to_fit_.clear();
+  for (const Stale& stale : stale_) {
+    to_fit_.push_back(stale.near->part);
+    for (const NearPart::Other& other : stale.near->others) to_fit_.push_back(other.part);
+  }
+  std::sort(to_fit_.begin(), to_fit_.end());
+  to_fit_.erase(std::unique(to_fit_.begin(), to_fit_.end()), to_fit_.end());
+  parallel_tasks(static_cast<Index>(to_fit_.size()), [&](Index i) {
+    SurfacePart& part = parts_[uz(to_fit_[uz(i)])];
     if (part.fitted) return;
     if (part.track.deviation() > stale_track * owners_[uz(part.owner)].size)
       part.track.renew(moves);
     fit_boxes(part, narrow_phase_, moves.to);
-  };
-  for (const NearPart* near : stale) {
-    prepare(near->part);
-    for (const Close& close : close_[uz(near->part)]) prepare(close.part);
-  }
-  parallel_tasks(static_cast<Index>(stale.size()), [&](Index i) {
-    NearPart& near = *stale[uz(i)];
+  });
+  parallel_tasks(static_cast<Index>(stale_.size()), [&](Index i) {
+    NearPart& near = *stale_[uz(i)].near;
+    const double skin = stale_[uz(i)].skin;
     const RigidMotionBound& track = parts_[uz(near.part)].track;
     near.mark = track.mark();
-    near.others.clear();
     near.before = 0.0;
-    for (const Close& close : close_[uz(near.part)]) {
+    for (NearPart::Other& close : near.others) {
       const RigidMotionBound& other = parts_[uz(close.part)].track;
-      near.others.push_back({close.part, other.mark()});
-      const double motion = changed_since(track, near.mark, other, near.others.back().mark) +
+      close.mark = other.mark();
+      const double motion = changed_since(track, near.mark, other, close.mark) +
                             relative_displacement(track.step(), other.step()) + 1e-6 * skin;
       near.before = std::max(near.before, motion);
     }
@@ -186,15 +189,10 @@ double NeighbourLists::build(const std::vector<NearPart*>& stale, double skin, c
     near.reach = moves.reach;
     finder_->make(near, near.known ? skin : 0.0, !near.known, moves);
   });
-  built_ += std::ssize(stale);
-  double used = 0.0;
-  for (const NearPart* near : stale) {
-    used = std::max(used, near->known ? near->before : std::numeric_limits<double>::infinity());
-  }
-  return used;
+  built_ += std::ssize(stale_);
 }
 
-// Checks every part of the pair and rebuilds the lists that are not valid any more.
+// Checks every part of the pair and notes the lists that are not valid any more for build().
 void NeighbourLists::check(NearPair& pair, const Moves& moves) {
   Owner &a = owners_[uz(pair.a)], &b = owners_[uz(pair.b)];
   update_tracks(a, moves);
@@ -220,32 +218,46 @@ void NeighbourLists::check(NearPair& pair, const Moves& moves) {
     used.push_back(used_of(near, range, skin, most, moves.reach));
     most_used = std::max(most_used, used.back());
   }
-  if (most_used > used_up * skin) {
-    std::vector<NearPart*> stale;
+  pair.rebuilt = most_used > used_up * skin;
+  if (pair.rebuilt) {
     most_used = 0.0;
     for (std::size_t i = 0; i < used.size(); ++i) {
       NearPart& near = pair.all[i];
       if (used[i] <= half_used * skin) {
         most_used = std::max(most_used, used[i]);
-      } else if (!close_[uz(near.part)].empty()) {
-        stale.push_back(&near);
+        continue;
+      }
+      near.others.clear();
+      for (const Close& close : close_[uz(near.part)]) near.others.push_back({close.part, {}});
+      if (!near.others.empty()) {
+        stale_.push_back({&near, skin});
       } else {
         near.nodes.clear();
         near.edges.clear();
-        near.others.clear();
         near.before = 0.0;
         near.known = true;
         near.reach = moves.reach;
       }
     }
-    most_used = std::max(most_used, build(stale, skin, moves));
+  }
+  pair.used = most_used;
+  pair.checking = true;
+}
+
+// Takes up the lists that were built.
+void NeighbourLists::finish(NearPair& pair, const Moves& moves) {
+  pair.checking = false;
+  if (pair.rebuilt) {
+    constexpr double all = std::numeric_limits<double>::infinity();
+    for (const NearPart& near : pair.all)
+      pair.used = std::max(pair.used, near.known ? near.before : all);
     collect(pair);
   }
-  pair.slack = std::min(pair.slack, skin - most_used);
+  pair.slack = std::min(pair.slack, skin_of(pair) - pair.used);
   pair.checked = true;
   pair.reach = moves.reach;
-  pair.a_mark = a.track.mark();
-  pair.b_mark = b.track.mark();
+  pair.a_mark = owners_[uz(pair.a)].track.mark();
+  pair.b_mark = owners_[uz(pair.b)].track.mark();
 }
 
 // Collects the parts that have a non-empty list, and their triangles.
@@ -277,23 +289,31 @@ const std::vector<const NearPair*>& NeighbourLists::update(const Moves& moves) {
     owner.track.update(moves);
   }
   near_.clear();
+  stale_.clear();
   for (NearPair& pair : pairs_) {
+    pair.checking = false;
     const MotionBound &a = owners_[uz(pair.a)].track, &b = owners_[uz(pair.b)].track;
     if (pair.a != pair.b && !a.box().grown(range_of(pair, moves.reach)).overlaps(b.box())) {
       pair.checked = false;
       continue;
     }
     // The bound covers both ends of the step.
-    double since =
+    const double since =
         moved_since(a, pair.a_mark, b, pair.b_mark) + relative_displacement(a.step(), b.step());
     if (!pair.checked || moves.reach > pair.reach || !(since <= pair.slack)) {
       check(pair, moves);
-      since = 0.0;
+    } else {
+      for (NearPart& near : pair.all) near.moved = near.before + since;
     }
-    for (NearPart& near : pair.all) near.moved = near.before + since;
     pair.skip_ccd =
         relative_displacement(a.step(), b.step()) <= narrow_phase_.ccd_motion(pair.a, pair.b);
     near_.push_back(&pair);
+  }
+  build(moves);
+  for (NearPair& pair : pairs_) {
+    if (!pair.checking) continue;
+    finish(pair, moves);
+    for (NearPart& near : pair.all) near.moved = near.before;
   }
   return near_;
 }

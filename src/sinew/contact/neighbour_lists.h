@@ -27,6 +27,10 @@ struct NearPair {
   double slack = 0.0;  // [m]
   double reach = 0.0;  // the reach at the last check [m]
   MotionBound::Mark a_mark, b_mark;
+  // Within update(): the lists that were not built again have used this much of their skin [m].
+  bool checking = false;
+  double used = 0.0;
+  bool rebuilt = false;
 };
 
 class NeighbourLists {
@@ -61,7 +65,8 @@ class NeighbourLists {
   void find_close(const NearPair& pair, double range, double skin, double& slack);
   double used_of(NearPart& near, double range, double skin, double most, double reach) const;
   void check(NearPair& pair, const Moves& moves);
-  double build(const std::vector<NearPart*>& stale, double skin, const Moves& moves);
+  void build(const Moves& moves);
+  void finish(NearPair& pair, const Moves& moves);
   void collect(NearPair& pair);
 
   const NarrowPhase& narrow_phase_;
@@ -70,6 +75,12 @@ class NeighbourLists {
   std::vector<NearPair> pairs_;  // all that may be in contact, by a, then b
   std::vector<const NearPair*> near_;
   std::unique_ptr<NearFinder> finder_;
+  struct Stale {
+    NearPart* near;
+    double skin;  // [m]
+  };
+  std::vector<Stale> stale_;               // lists of all pairs to build in this step
+  std::vector<Index> to_fit_;              // scratch: the parts that they need
   std::vector<std::vector<Close>> close_;  // scratch (parts): of the current pair, ascending
   Boxes part_boxes_;                       // scratch: boxes of the parts of b
   std::vector<float> gaps_;                // scratch: gaps to part_boxes_ [m]

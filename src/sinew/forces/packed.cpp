@@ -142,7 +142,7 @@ double PackedForces::compute(const Model& model, const State& state) {
 }
 
 double PackedForces::compute_nearby(const Model& model, const State& state) {
-  parallel_tasks(patch_count(), [&](Index p) {
+  run_patches([&](Index p) {
     const FlushDenormals flush;
     const Patch& patch = patches_[uz(p)];
     const auto first = uz(patch.nodes.begin);
@@ -150,7 +150,7 @@ double PackedForces::compute_nearby(const Model& model, const State& state) {
                         model, state, displacement_.data() + 4 * first,
                         velocity_.empty() ? nullptr : velocity_.data() + 4 * first);
   });
-  parallel_tasks(patch_count(), [&](Index p) {
+  run_patches([&](Index p) {
     const FlushDenormals flush;
     const Patch& patch = patches_[uz(p)];
     fill_slots(model, state, patch);
@@ -161,7 +161,7 @@ double PackedForces::compute_nearby(const Model& model, const State& state) {
   compute_cell_pressures();
   std::vector<float> smallest(patches_.size(), 1.0f);
   std::vector<double> heat(patches_.size(), 0.0);
-  parallel_tasks(patch_count(), [&](Index p) {
+  run_patches([&](Index p) {
     const FlushDenormals flush;
     const Patch& patch = patches_[uz(p)];
     for (auto s = uz(patch.slots.begin); s < uz(patch.slots.end); ++s) {

@@ -49,7 +49,7 @@ class PackedForces {
   // terms and springs on its nodes [N]: four floats per node. -1 is no node.
   template <class F>
   void for_each_patch(const F& f) const {
-    parallel_tasks(patch_count(), [&](Index p) {
+    run_patches([&](Index p) {
       const Patch& patch = patches_[uz(p)];
       std::array<float, std::size_t{4} * (most_nodes + 1)> force;
       gather(patch, force.data());
@@ -68,6 +68,14 @@ class PackedForces {
   std::size_t bytes() const;
 
  private:
+  // Calls f(patch). A pass over few tets takes less time than waking threads for it.
+  template <typename F>
+  void run_patches(const F& f) const {
+    constexpr std::size_t few_tets = 2500;
+    if (tet_id_.size() >= few_tets) return parallel_tasks(patch_count(), f);
+    for (Index p = 0; p < patch_count(); ++p) f(p);
+  }
+
   friend class Packer;
 
   static constexpr Index most_nodes = 512;  // per patch: its slots stay in the L1 cache
