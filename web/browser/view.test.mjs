@@ -55,7 +55,7 @@ test("every colouring has its bar in physical units", () =>
         const title = scene.quantities.find((q) => q.name === n).title;
         return document.querySelector("#colorbar .title")?.textContent === title;
       }, name);
-      assert.match(await page.locator("#colorbar .ticks span").first().textContent(), unit, name);
+      await until(page, (source) => new RegExp(source).test(document.querySelector("#colorbar .ticks span")?.textContent ?? ""), unit.source);
     }
     await page.selectOption("#coloring", "region");
     await until(page, () => document.querySelectorAll("#colorbar .entry").length === 3);
