@@ -58,6 +58,17 @@ def _value(value: Any) -> str:
                      "numbers, texts, True and False, lists, dicts and numpy arrays do")
 
 
+def _whole(values: Numbers | None, what: str) -> npt.NDArray[np.int32]:
+    """Whole numbers of 32 bits; numpy would cut fractions off and wrap large ones around."""
+    array = np.asarray([] if values is None else values)
+    if array.size == 0:
+        return np.empty(0, np.int32)
+    out = array.astype(np.int64) if array.dtype.kind in "iuf" and np.isfinite(array).all() else None
+    if out is None or (out != array).any() or (np.abs(out) > 2**31 - 1).any():
+        raise UsageError(f"{what} are not all whole numbers of 32 bits", "give integers, from 0")
+    return out.astype(np.int32)
+
+
 class Scene:
     """A scene: bodies with their meshes and materials, supports, motions, loads.
 
@@ -146,12 +157,11 @@ class Scene:
             raise UsageError(f"body '{name}' has nodes or tets, not both", "give both arrays")
         if nodes is not None:
             keys["mesh"] = f"memory:{name}"
-            integers = np.empty(0, np.int32)
+            of = f"of body '{name}'"
             self._bodies[name] = (
-                np.asarray(nodes, np.float64), np.asarray(tets, np.int32),
-                np.asarray(integers if tet_labels is None else tet_labels, np.int32),
-                np.asarray(integers if faces is None else faces, np.int32),
-                np.asarray(integers if face_labels is None else face_labels, np.int32))
+                np.asarray(nodes, np.float64), _whole(tets, f"the tets {of}"),
+                _whole(tet_labels, f"the tet_labels {of}"), _whole(faces, f"the faces {of}"),
+                _whole(face_labels, f"the face_labels {of}"))
         return self._add("body", name, keys)
 
     def region(self, body: str, name: str, /, **keys: Any) -> Scene:
@@ -201,7 +211,7 @@ class Scene:
         if nodes is not None:
             keys["mesh"] = f"memory:{name}"
             self._obstacles[name] = (np.asarray(nodes, np.float64),
-                                     np.asarray(triangles, np.int32))
+                                     _whole(triangles, f"the triangles of obstacle '{name}'"))
         return self._add("obstacle", name, keys)
 
     def ground(self, /, **keys: Any) -> Scene:

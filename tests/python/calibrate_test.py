@@ -54,7 +54,6 @@ class CalibrateTest(PythonTest):
                           **PRESS).estimates["cube.young"]
             held += e.low <= 12e3 <= e.high
         self.assertGreaterEqual(held, 89)
-        self.assertLessEqual(held, 100)
 
     # A long bar that is free at its sides: the force tells Young's modulus, not Poisson's ratio.
     def test_what_the_data_do_not_determine_is_said(self):

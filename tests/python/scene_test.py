@@ -62,7 +62,10 @@ class SceneTest(PythonTest):
         for bad, what in ((dict(nodes=CUBE), "nodes or tets"),
                           (dict(nodes=CUBE[:, :2], tets=TETS), "n x 3"),
                           (dict(nodes=CUBE, tets=TETS, tet_labels=[1]), "1 labels for 5"),
-                          (dict(nodes=CUBE, tets=TETS + 5), "")):
+                          (dict(nodes=CUBE, tets=TETS + 5), "node"),
+                          (dict(nodes=CUBE, tets=TETS + 0.5), "not all whole numbers"),
+                          (dict(nodes=CUBE, tets=TETS + 2**32), "not all whole numbers"),
+                          (dict(nodes=CUBE, tets=TETS * np.nan), "not all whole numbers")):
             with self.assertRaisesRegex(sinew.Error, what):
                 sinew.Simulation(sinew.Scene().body("cube", **bad))
 

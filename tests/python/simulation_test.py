@@ -69,17 +69,6 @@ class Time(PythonTest):
         for settings in ({"beam.young": 15e6}, ["beam.young=15e6"]):
             self.assertGreater(tip(settings), 0.5 * tip(None))
 
-    def test_a_step_costs_little(self):
-        sim = sinew.Simulation("[body.b]\nshape = \"box\"\ncells = [1, 1, 1]\n"
-                               "[pin.p]\nselect = { side = \"-y\" }\n", threads=1)
-        x = sim.positions
-        sim.step()
-        start = time.perf_counter()
-        for _ in range(2000):
-            sim.step()
-        self.assertLess((time.perf_counter() - start) / 2000, 2e-3)  # the figure: docs/python.md
-        self.assertEqual(len(x), 8)
-
 
 class Arrays(PythonTest):
     def test_shapes_and_types(self):

@@ -138,6 +138,19 @@ class StudyTest(PythonTest):
             self.study().run(self.dir / "s", design="latin", samples=3)
         with self.assertRaisesRegex(sinew.UsageError, "other scene or settings"):
             Study(beam(duration=0.06), VARY).run(self.dir / "s")
+        with self.assertRaisesRegex(sinew.UsageError, "other scene or settings"):
+            self.study(measure=lowest).run(self.dir / "s")
+        with self.assertRaisesRegex(sinew.UsageError, "no lambda"):
+            self.study(measure=lambda result: {}).run(self.dir / "u")
+        cube = 0.1 * np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], float)
+        def one_tet(size):
+            scene = sinew.Scene(duration=0.01)
+            scene.body("t", nodes=size * cube, tets=[[0, 1, 2, 3]])
+            scene.pin("p", select={"nodes": [0]})
+            return Study(scene, {"t.young": [1e4]})
+        one_tet(1.0).run(self.dir / "v")
+        with self.assertRaisesRegex(sinew.UsageError, "other scene"):
+            one_tet(2.0).run(self.dir / "v")  # the same text, another mesh
         (self.dir / "t").mkdir()
         (self.dir / "t" / "mine.txt").touch()
         with self.assertRaisesRegex(sinew.UsageError, "not empty"):

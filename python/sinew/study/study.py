@@ -85,11 +85,16 @@ class Study:
         return table
 
     def _identity(self) -> str:
-        """Changes with the scene's text and the settings."""
-        scene = self.task.scene
-        text = scene.toml() if isinstance(scene, Scene) else pathlib.Path(scene).read_text(
-            encoding="utf-8", errors="replace")
-        return hashlib.sha256(f"{text}\0{dict(self.task.settings)}".encode()).hexdigest()
+        """Changes with the scene's text and arrays, the settings and the measure; not with mesh files."""
+        scene, measure = self.task.scene, self.task.measure
+        known = hashlib.sha256(repr(dict(self.task.settings)).encode())
+        known.update(f"{measure.__module__}.{measure.__qualname__}".encode() if measure else b"")
+        if isinstance(scene, Scene):
+            known.update(scene.toml().encode())
+            known.update(pickle.dumps((scene._bodies, scene._obstacles), protocol=4))
+        else:
+            known.update(pathlib.Path(scene).read_bytes())
+        return known.hexdigest()
 
     def _prepare(self, place: pathlib.Path, points: list[Point]) -> None:
         plan = {"identity": self._identity(), "points": json.loads(json.dumps(points))}
@@ -102,8 +107,13 @@ class Study:
                                  "name another folder; this one keeps its results")
         elif place.exists() and any(place.iterdir()):
             raise UsageError(f"{place} is not empty and holds no study", "name another folder")
+        try:
+            task = pickle.dumps(self.task)
+        except (pickle.PicklingError, AttributeError, TypeError) as error:
+            raise UsageError(f"other processes cannot get the measure: {error}",
+                             "give a function of a module, no lambda") from None
         (place / "runs").mkdir(parents=True, exist_ok=True)
-        (place / "task.pickle").write_bytes(pickle.dumps(self.task))
+        (place / "task.pickle").write_bytes(task)
         fresh = file.with_suffix(".tmp")
         fresh.write_text(json.dumps(plan, indent=1), encoding="utf-8")
         fresh.replace(file)
