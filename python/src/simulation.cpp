@@ -79,6 +79,7 @@ class PySimulation {
       const py::gil_scoped_release unlock;
       act(simulation_);
     }
+    if (ctrl_c.stop()->load()) sim::internals(simulation_).forget_interrupt();
     follow();
     ctrl_c.finish();
   }

@@ -1,5 +1,6 @@
 // Whole tasks: runs, identification, validation, convergence. Results go to Python as JSON, the
 // format of the command line, or as dictionaries of the same names.
+#include <filesystem>
 #include <functional>
 #include <optional>
 #include <utility>
@@ -160,6 +161,17 @@ std::string converge(const std::string& file, const std::vector<std::string>& se
 }  // namespace
 
 void add_tasks(py::module_& m) {
+  // The mesh files that a scene reads, absolute where it is in a folder.
+  m.def("files_of", [](const SceneSource& source) {
+    const Scene scene = scene_of(source);
+    std::vector<std::string> files;
+    const auto add = [&](const std::string& mesh, bool given) {
+      if (!mesh.empty() && !given)
+        files.push_back((std::filesystem::path(scene.base) / mesh).string());
+    };
+    for (const SceneBody& b : scene.bodies) add(b.mesh, scene.given.bodies.count(b.mesh) > 0);
+    return files;
+  });
   m.def("duration_of", [](const SceneSource& source) { return scene_of(source).duration; });
   m.def("run", run, py::arg("source"), py::arg("out"), py::arg("force"), py::arg("threads"),
         py::arg("progress"));

@@ -291,8 +291,13 @@ class Threads(PythonTest):
             except KeyboardInterrupt:
                 print("stopped", flush=True)
             time = sim.time
-            sim.advance(0.001)
-            print("goes on", sim.time > time)
+            print("steps", flush=True)
+            try:  # explicit steps do not look at interrupt()
+                while True:
+                    sim.step()
+            except KeyboardInterrupt:
+                pass
+            print("goes on", sim.advance(0.001), sim.time > time)
         """)
         child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True,
                                  env=os.environ)
@@ -300,7 +305,11 @@ class Threads(PythonTest):
         time.sleep(0.3)
         start = time.monotonic()
         child.send_signal(signal.SIGINT)
-        self.assertEqual(child.stdout.read(), "stopped\ngoes on True\n")
+        self.assertEqual(child.stdout.readline(), "stopped\n")
+        self.assertEqual(child.stdout.readline(), "steps\n")
+        time.sleep(0.3)
+        child.send_signal(signal.SIGINT)
+        self.assertEqual(child.stdout.read(), "goes on True True\n")
         self.assertLess(time.monotonic() - start, 20)
         child.stdout.close()
         self.assertEqual(child.wait(), 0)

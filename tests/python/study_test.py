@@ -151,6 +151,14 @@ class StudyTest(PythonTest):
         one_tet(1.0).run(self.dir / "v")
         with self.assertRaisesRegex(sinew.UsageError, "other scene"):
             one_tet(2.0).run(self.dir / "v")  # the same text, another mesh
+        mesh = self.write("t.mesh", "MeshVersionFormatted 1\nDimension 3\nVertices\n4\n0 0 0 0\n"
+                          "0.1 0 0 0\n0 0.1 0 0\n0 0 0.1 0\nTetrahedra\n1\n1 2 3 4 0\nEnd\n")
+        file = self.write("t.toml", "duration = 0.01\n[body.t]\nmesh = \"t.mesh\"\n"
+                          "[pin.p]\nselect = { nodes = [0] }\n")
+        Study(file, {"t.young": [1e4]}).run(self.dir / "w")
+        mesh.write_text(mesh.read_text().replace("0 0 0.1 0", "0 0 0.2 0"))
+        with self.assertRaisesRegex(sinew.UsageError, "other scene"):
+            Study(file, {"t.young": [1e4]}).run(self.dir / "w")
         (self.dir / "t").mkdir()
         (self.dir / "t" / "mine.txt").touch()
         with self.assertRaisesRegex(sinew.UsageError, "not empty"):

@@ -85,7 +85,7 @@ class Study:
         return table
 
     def _identity(self) -> str:
-        """Changes with the scene's text and arrays, the settings and the measure; not with mesh files."""
+        """Changes with the scene's text, its meshes and arrays, the settings and the measure."""
         scene, measure = self.task.scene, self.task.measure
         known = hashlib.sha256(repr(dict(self.task.settings)).encode())
         known.update(f"{measure.__module__}.{measure.__qualname__}".encode() if measure else b"")
@@ -94,6 +94,9 @@ class Study:
             known.update(pickle.dumps((scene._bodies, scene._obstacles), protocol=4))
         else:
             known.update(pathlib.Path(scene).read_bytes())
+        for file in _sinew.files_of(source_of(scene, self.task.settings)):
+            if os.path.isfile(file):
+                known.update(pathlib.Path(file).read_bytes())
         return known.hexdigest()
 
     def _prepare(self, place: pathlib.Path, points: list[Point]) -> None:

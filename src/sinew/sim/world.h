@@ -66,6 +66,8 @@ class World {
   void step(double dt);
   bool advance(double seconds);
   void interrupt() noexcept { stop_.store(true); }
+  // Takes back an interrupt() that came too late for the step that it was for.
+  void forget_interrupt() noexcept { stop_.store(false); }
 
   // Takes steps to the end of the current frame, at least one; none after `deadline`, and none
   // after `stop` is set, which also ends a search for a rest state. Returns true if the end is
