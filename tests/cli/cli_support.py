@@ -3,11 +3,14 @@
 Each test is a unittest file; SINEW_BIN names the binary (ctest sets it).
 """
 
+import contextlib
 import os
 import pathlib
+import signal
 import subprocess
 import tempfile
 import unittest
+import urllib.request
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 SCENES = ROOT / "scenes"
@@ -44,3 +47,21 @@ class CliTest(unittest.TestCase):
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(text, encoding="utf-8")
         return path
+
+    @contextlib.contextmanager
+    def view(self, *args):
+        """The address of a `sinew view` that is ended by Ctrl-C afterwards, with exit code 0."""
+        process = subprocess.Popen([BIN, "view", "--port", "0", *map(str, args)], cwd=self.dir,
+                                   stdout=subprocess.PIPE, text=True)
+        try:
+            yield process.stdout.readline().strip()
+            process.send_signal(signal.SIGINT)
+            self.assertEqual(process.wait(timeout=60), 0)
+        finally:
+            process.kill()
+            process.stdout.close()
+            process.wait()
+
+    def get(self, url, path=""):
+        with urllib.request.urlopen(url + path, timeout=120) as answer:
+            return answer.read().decode("utf-8", "replace")

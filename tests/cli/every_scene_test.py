@@ -4,12 +4,9 @@ Short; the sanitizer builds run the whole program by it.
 """
 
 import json
-import signal
-import subprocess
 import unittest
-import urllib.request
 
-from cli_support import BIN, ROOT, SCENES, CliTest
+from cli_support import ROOT, SCENES, CliTest
 
 FRAMES = 2
 
@@ -60,19 +57,9 @@ class EverySceneTest(CliTest):
     def test_view(self):
         for scene in self.scenes():
             with self.subTest(scene.stem):
-                process = subprocess.Popen([BIN, "view", "--port", "0", "--quiet", str(scene)],
-                                           cwd=self.dir, stdout=subprocess.PIPE, text=True)
-                try:
-                    url = process.stdout.readline().strip()
+                with self.view(scene, "--quiet") as url:
                     for path in ("", "scene.toml", "state.vtu", "gallery.json"):
-                        with urllib.request.urlopen(url + path, timeout=120) as answer:
-                            self.assertGreater(len(answer.read()), 100, path)
-                    process.send_signal(signal.SIGINT)
-                    self.assertEqual(process.wait(timeout=60), 0)
-                finally:
-                    process.kill()
-                    process.stdout.close()
-                    process.wait()
+                        self.assertGreater(len(self.get(url, path)), 100, path)
 
 
 if __name__ == "__main__":

@@ -1,35 +1,13 @@
 """sinew view: its output, the files it opens, its end. The page has separate tests."""
 
-import contextlib
 import json
 import re
-import signal
-import subprocess
 import unittest
-import urllib.request
 
-from cli_support import BIN, INPUT, IO, SCENES, USAGE, CliTest
+from cli_support import INPUT, IO, SCENES, USAGE, CliTest
 
 
 class ViewTest(CliTest):
-    @contextlib.contextmanager
-    def view(self, *args):
-        """The address of a `sinew view` that is ended by Ctrl-C afterwards, with exit code 0."""
-        process = subprocess.Popen([BIN, "view", "--port", "0", *map(str, args)], cwd=self.dir,
-                                   stdout=subprocess.PIPE, text=True)
-        try:
-            yield process.stdout.readline().strip()
-            process.send_signal(signal.SIGINT)
-            self.assertEqual(process.wait(timeout=20), 0)
-        finally:
-            process.kill()
-            process.stdout.close()
-            process.wait()
-
-    def get(self, url, path=""):
-        with urllib.request.urlopen(url + path, timeout=20) as answer:
-            return answer.read().decode("utf-8", "replace")
-
     def test_a_scene(self):
         with self.view(SCENES / "beam.toml", "--set", "beam.young=33e3", "--quiet") as url:
             self.assertRegex(url, r"^http://127\.0\.0\.1:\d+/$")
