@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _sinew
+from .errors import UsageError
 
 Floats = npt.NDArray[np.float64]
 Ints = npt.NDArray[np.int32]
@@ -18,7 +19,10 @@ Point = Sequence[float] | Floats
 
 def xyz(value: Point) -> tuple[float, float, float]:
     """Three numbers of anything that has three."""
-    x, y, z = (float(v) for v in value)
+    try:
+        x, y, z = (float(v) for v in value)
+    except (TypeError, ValueError):
+        raise UsageError(f"{value!r} is no place or direction", "give three numbers") from None
     return x, y, z
 
 

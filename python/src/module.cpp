@@ -81,6 +81,12 @@ Scene scene_of(const SceneSource& source) {
   return scene;
 }
 
+int checked_threads(int threads) {
+  if (threads < 0 || threads > 1024)
+    throw Error(ErrorKind::usage, std::to_string(threads) + " threads", "give 1 to 1024; 0: all");
+  return threads;
+}
+
 std::atomic<CtrlC*> CtrlC::current_{nullptr};
 
 void CtrlC::handle(int) {

@@ -40,6 +40,9 @@ struct SceneSource {
 // Throws Error.
 Scene scene_of(const SceneSource& source);
 
+// The number itself. Error(usage) if it is not from 0 to 1024.
+int checked_threads(int threads);
+
 // While an object of this class lives, Ctrl-C sets `stop` and interrupts the simulation instead of
 // ending Python; finish() then raises KeyboardInterrupt. On the main thread only, where Python
 // handles signals.

@@ -59,7 +59,7 @@ class PySimulation {
       const CancelScope scope(*ctrl_c.stop());
       const Scene scene = scene_of(source);
       sim::WorldOptions options;
-      options.threads = threads;
+      options.threads = checked_threads(threads);
       const py::gil_scoped_release unlock;
       out = std::make_unique<PySimulation>(sim::simulate(scene, std::move(options)));
     } catch (const Cancelled&) {

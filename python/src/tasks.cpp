@@ -29,7 +29,7 @@ auto without_gil(int threads, const Act& act) {
   try {
     const CancelScope scope(*ctrl_c.stop());
     const py::gil_scoped_release unlock;
-    const ThreadLimit limit(threads);
+    const ThreadLimit limit(checked_threads(threads));
     result = act(ctrl_c.stop());
   } catch (const Cancelled&) {
   }

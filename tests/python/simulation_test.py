@@ -41,6 +41,17 @@ class Time(PythonTest):
             hashes.add(sim.hash())
         self.assertEqual(len(hashes), 1)
 
+    def test_mistakes_of_a_call(self):
+        for threads in (-1, 5000):
+            with self.assertRaisesRegex(sinew.UsageError, "threads"):
+                sinew.Simulation(BEAM, threads=threads)
+            with self.assertRaisesRegex(sinew.UsageError, "threads"):
+                sinew.run(BEAM, threads=threads)
+        sim = sinew.Simulation(BEAM)
+        for place in ([1, 2], "up", None, 3.0):
+            with self.assertRaisesRegex(sinew.UsageError, "three numbers"):
+                sim.nearest_node(place)
+
     def test_threads_do_not_change_the_bits(self):
         hashes = set()
         for threads in (1, 2):

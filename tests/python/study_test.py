@@ -128,6 +128,12 @@ class StudyTest(PythonTest):
         with self.assertRaisesRegex(sinew.UsageError, "no column 'tip.uz2'"):
             table.column("tip.uz2")
 
+    def test_numbers_of_numpy(self):
+        table = Study(beam(duration=0.01), {"limit_sweeps": np.array([3, 4])}).run(self.dir / "s",
+                                                                                workers=2)
+        self.assertEqual([row["limit_sweeps"] for row in table], [3, 4])
+        self.assertEqual(len(table.finished), 2)
+
     def test_a_file(self):
         file = self.write("beam.toml", "duration = 0.05\n" + BEAM)
         self.check(Study(file, VARY).run(self.dir / "s", workers=2))
@@ -263,7 +269,7 @@ class DaskTest(StudyTest):
         self.check(table)
 
     # Those of the local engine were run by the class above.
-    test_local = test_a_file = test_another_study_is_not_overwritten = None
+    test_local = test_a_file = test_numbers_of_numpy = test_another_study_is_not_overwritten = None
     test_failures_are_kept_apart_and_named = test_a_worker_that_dies_loses_nothing = None
     test_a_run_that_always_brings_its_process_down = test_killed_and_resumed = None
     test_slurm_script = test_a_task_of_an_array = None

@@ -11,10 +11,12 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
+import numpy as np
+
 from ..errors import UsageError
 from ..scene import Path, Scene, source_of
 from .. import _sinew
-from .designs import Point, Values, design_of
+from .designs import Point, Range, Values, design_of
 from .engines import Engine, engine_of
 from .point import Measure, Task, row_file, write_row
 from .sensitivity import Morris, Sobol
@@ -38,7 +40,10 @@ class Study:
     def __init__(self, scene: Scene | Path, vary: Mapping[str, Values], *,
                  set: Mapping[str, Any] | None = None, measure: Measure | None = None) -> None:
         absolute: Scene | Path = scene if isinstance(scene, Scene) else os.path.abspath(os.fspath(scene))
-        self.vary = dict(vary)
+        # Numbers of numpy become Python's, which JSON knows.
+        self.vary = {key: v if isinstance(v, Range | str) else
+                     [x.item() if isinstance(x, np.generic) else x for x in v]
+                     for key, v in vary.items()}
         self.task = Task(absolute, dict(set or {}), measure)
 
     def run(self, folder: Path, *, design: str | Morris | Sobol = "grid", samples: int = 100,
