@@ -78,7 +78,6 @@ function(sinew_room name level)
   if(sources)
     add_library(sinew_${name} STATIC ${sources})
     target_link_libraries(sinew_${name} PUBLIC sinew_flags ${below} ${ARGN})
-    target_compile_definitions(sinew_${name} PRIVATE SINEW_VERSION="${PROJECT_VERSION}")
     sinew_precompile(sinew_${name} sinew_base)
     sinew_batches(sinew_${name})
     # For libsinew and the Python module, which export only symbols marked SINEW_API. Always: the

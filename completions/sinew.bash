@@ -25,7 +25,7 @@ _sinew() {
   local meshes=(mesh msh vtk vtu node ele)
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    _sinew_words "run resume view info convert repair identify converge study validate materials bench completion --help --version"
+    _sinew_words "run resume view info convert repair identify converge study calibrate validate materials bench completion --help --version"
     return
   fi
   case ${COMP_WORDS[1]}:$previous in
@@ -80,6 +80,8 @@ _sinew() {
     study:--on) _sinew_words "local slurm tcp://" ;;
     study:-*) _sinew_words "-o --out --on --workers --json -q --quiet --help" ;;
     study:*) _sinew_files toml ;;
+    calibrate:-*) _sinew_words "-o --out --json -q --quiet --help" ;;
+    calibrate:*) _sinew_files toml ;;
     validate:-*) _sinew_words "--dir --law -o --out --quick --full --list --json -q --quiet --threads --help" ;;
     validate:*) _sinew_words "$(cd validation 2>/dev/null && printf '%s ' *)" ;;
     materials:-*) _sinew_words "--json --help" ;;

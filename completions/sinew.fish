@@ -14,6 +14,7 @@ complete -c sinew -n __fish_use_subcommand -a repair -d 'Join double nodes, remo
 complete -c sinew -n __fish_use_subcommand -a identify -d 'Measure what each law makes of a material on a mesh'
 complete -c sinew -n __fish_use_subcommand -a converge -d 'See whether the answer depends on the mesh'
 complete -c sinew -n __fish_use_subcommand -a study -d 'Run a scene many times with other values'
+complete -c sinew -n __fish_use_subcommand -a calibrate -d 'Fit parameters to a measured curve'
 complete -c sinew -n __fish_use_subcommand -a validate -d 'Compare the laws with reference values'
 complete -c sinew -n __fish_use_subcommand -a materials -d 'Show the tissue library'
 complete -c sinew -n __fish_use_subcommand -a bench -d 'Measure what Sinew costs on this machine'
@@ -68,6 +69,12 @@ complete -c sinew -n $study -l workers -x -d 'Processes, or tasks of the job arr
 complete -c sinew -n $study -l json -d 'Print JSON'
 complete -c sinew -n $study -s q -l quiet -d 'Print errors only'
 
+set -l calibrate '__fish_seen_subcommand_from calibrate'
+complete -c sinew -n $calibrate -a '(__fish_complete_suffix .toml)'
+complete -c sinew -n $calibrate -s o -l out -x -a '(__fish_complete_directories)' -d 'Folder to write'
+complete -c sinew -n $calibrate -l json -d 'Print JSON'
+complete -c sinew -n $calibrate -s q -l quiet -d 'Print errors only'
+
 set -l validate '__fish_seen_subcommand_from validate'
 complete -c sinew -n $validate -a '(path basename validation/*/ 2>/dev/null)'
 complete -c sinew -n $validate -l dir -x -a '(__fish_complete_directories)' -d 'Folder of the cases'
@@ -115,7 +122,7 @@ complete -c sinew -n $bench -l json -r -d 'Write JSON here'
 complete -c sinew -n $bench -l peer -r -d 'Program whose rows join'
 complete -c sinew -n $bench -s q -l quiet -d 'No progress and no table'
 complete -c sinew -n '__fish_seen_subcommand_from completion' -a 'bash zsh fish'
-set -l any '__fish_seen_subcommand_from run resume info convert repair identify converge study validate materials bench completion'
+set -l any '__fish_seen_subcommand_from run resume info convert repair identify converge study calibrate validate materials bench completion'
 complete -c sinew -n $any -l help -d 'Show help'
 
 complete -c sinew-mesh -f

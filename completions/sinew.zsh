@@ -31,6 +31,7 @@ _sinew() {
         'identify:Measure what each law makes of a material on a mesh'
         'converge:See whether the answer depends on the mesh'
         'study:Run a scene many times with other values'
+        'calibrate:Fit parameters to a measured curve'
         'validate:Compare the laws with reference values'
         'materials:Show the tissue library'
         'bench:Measure what Sinew costs on this machine'
@@ -120,6 +121,13 @@ _sinew() {
             '--workers[Processes, or tasks of the job array]:count:' '--json[Print JSON]' \
             '(-q --quiet)'{-q,--quiet}'[Print errors only]' '--help[Show help]' \
             '1:study:_files -g "*.toml(-.)"'
+          ;;
+        calibrate)
+          _arguments '(-o --out)'{-o,--out}'[Folder to write]:folder:_files -/' \
+            '--json[Print JSON]' \
+            '(-q --quiet)'{-q,--quiet}'[Print errors only]' \
+            '--help[Show help]' \
+            '1:calibration:_files -g "*.toml(-.)"'
           ;;
         validate)
           _arguments '--dir[Folder of the cases]:folder:_files -/' \

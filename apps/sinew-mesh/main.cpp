@@ -2,6 +2,7 @@
 // sinew-mesh: a closed surface or a labelled image becomes a tetrahedral mesh.
 #include <fmt/format.h>
 #include <signal.h>
+#include <sinew/version.h>
 #include <unistd.h>
 
 #include <CGAL/assertions.h>
@@ -313,7 +314,7 @@ int fail(const std::string& text, ErrorKind kind) {
 
 int main(int argc, char** argv) {
   CLI::App app{"Fills a closed surface or a labelled image with tetrahedra.", "sinew-mesh"};
-  app.set_version_flag("--version", "sinew-mesh " SINEW_VERSION);
+  app.set_version_flag("--version", std::string("sinew-mesh ") + version());
   app.footer(kFooter);
   Arguments a;
   add_options(app, a);

@@ -14,6 +14,7 @@ void add_identify(CLI::App& app);
 void add_validate(CLI::App& app, int& status);
 void add_converge(CLI::App& app, int& status);
 void add_study(CLI::App& app);
+void add_calibrate(CLI::App& app);
 void add_bench(CLI::App& app, int& status);
 void add_view(CLI::App& app, int& status);
 void add_completion(CLI::App& app);

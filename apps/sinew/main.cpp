@@ -1,4 +1,5 @@
 // The command line: parses arguments, calls the library, converts errors into text and exit codes.
+#include <sinew/version.h>
 #include <CLI/CLI.hpp>
 #include <cerrno>
 #include <cstdio>
@@ -52,7 +53,7 @@ int finish_output(int status, int before) {
 int run(int argc, char** argv, int& output_failure) {
   CLI::App app{"Sinew simulates soft tissue as a mass-spring system on tetrahedral meshes.",
                "sinew"};
-  app.set_version_flag("--version", "sinew " SINEW_VERSION);
+  app.set_version_flag("--version", std::string("sinew ") + version());
   app.require_subcommand(1);
   app.footer(footer);
   int status = 0;
@@ -67,6 +68,7 @@ int run(int argc, char** argv, int& output_failure) {
   add_validate(app, status);
   add_converge(app, status);
   add_study(app);
+  add_calibrate(app);
   add_bench(app, status);
   add_completion(app);
   try {

@@ -78,7 +78,7 @@ typedef struct sinew_frame {
   const double* velocities; /* [m/s] (3 nodes) */
 } sinew_frame;
 
-/* "0.1.0" */
+/* "0.2.0" */
 SINEW_API const char* sinew_version(void);
 /* The text of the last error on this thread: "file:line:column: message\n  remedy: ...". Valid
  * until the next call of this thread that fails. */

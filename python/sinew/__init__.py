@@ -13,12 +13,13 @@ Units are SI everywhere. Start with Scene, Simulation and run(); help() has the 
 """
 
 from ._sinew import version as __version__
-from . import study
+from . import report, study
 from .calibration import Calibration, Estimate, calibrate, read_curve
 from .errors import (DivergedError, Error, InputError, InternalError, IoError, UnstableError,
                      UsageError)
 from .handles import (Body, ContactPoint, Event, Grab, Material, Motion, Obstacle, Pin, Pose, Probe,
                       Wrench)
+from .live import View, view
 from .scene import Scene
 from .simulation import Simulation
 from .tasks import (ConvergeResult, LawIdentity, Moduli, RunResult, Trend, ValidateResult,
@@ -28,7 +29,7 @@ __all__ = [
     "Body", "Calibration", "ContactPoint", "ConvergeResult", "DivergedError", "Error",
     "Estimate", "Event", "Grab", "InputError", "InternalError", "IoError", "LawIdentity",
     "Material", "Moduli", "Motion", "Obstacle", "Pin", "Pose", "Probe", "RunResult", "Scene",
-    "Simulation", "Trend", "UnstableError", "UsageError", "ValidateResult", "Wrench",
-    "__version__", "calibrate", "converge", "identify", "read_curve", "read_table", "resume",
-    "run", "static", "study", "validate",
+    "Simulation", "Trend", "UnstableError", "UsageError", "ValidateResult", "View", "Wrench",
+    "__version__", "calibrate", "converge", "identify", "read_curve", "read_table", "report",
+    "resume", "run", "static", "study", "validate", "view",
 ]

@@ -10,6 +10,7 @@ import numpy as np
 from . import _sinew
 from .handles import (Body, Event, Floats, Grab, Ints, Material, Obstacle,
                       Pin, Point, Probe, xyz)
+from .live import View
 from .scene import Path, Scene, source_of
 
 Settings = Mapping[str, Any] | Sequence[str]
@@ -52,6 +53,15 @@ class Simulation:
     def __init__(self, scene: Scene | Path, *, set: Settings | None = None,
                  threads: int = 0) -> None:
         self._s = _sinew.Simulation(source_of(scene, set), threads)
+
+    def show(self, *, height: int = 480, port: int = 0) -> View:
+        """Shows the simulation live in a notebook: as the last value of a cell, or by display(). The
+        view has the simulation until its close().
+
+            page = sim.show()
+            page
+        """
+        return View(self, port=port, framed=True, height=height)
 
     # ---- time ----
 

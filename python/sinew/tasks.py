@@ -39,6 +39,8 @@ class RunResult:
     state_hash: str
     error: str  # of a run that diverged; else empty
     summary: Mapping[str, Any]  # all of summary.json
+    rest_positions: Floats  # (nodes, 3) [m]
+    positions: Floats  # (nodes, 3), at the end [m]
 
     def table(self, name: str = "probes") -> dict[str, Floats]:
         """The columns of probes.csv, energy.csv or frames.csv, by their headings.
@@ -72,15 +74,16 @@ def read_table(file: Path) -> dict[str, Floats]:
     return {head: np.array([number(row[i]) for row in rows]) for i, head in enumerate(heads)}
 
 
-def _result(text: str, folder: Path | None) -> RunResult:
-    s = json.loads(text)
+def _result(done: tuple[str, Floats, Floats], folder: Path | None) -> RunResult:
+    s = json.loads(done[0])
     probes = {name: Probe(name, np.array(p["position"]), np.array(p["displacement"]))
               for name, p in s["probes"].items()}
     return RunResult(
         status=s["status"], folder=None if folder is None else pathlib.Path(folder),
         time=s["sim_seconds"], wall_seconds=s["wall_seconds"], steps=s["steps"],
         frames=s["frames"], stepper=s["stepper"], energy=s["energy"], probes=probes,
-        warnings=s["warnings"], state_hash=s["state_hash"], error=s.get("error", ""), summary=s)
+        warnings=s["warnings"], state_hash=s["state_hash"], error=s.get("error", ""), summary=s,
+        rest_positions=done[1], positions=done[2])
 
 
 def run(scene: Scene | Path, *, out: Path | None = None, set: Settings | None = None,

@@ -125,7 +125,7 @@ void CtrlC::finish() {
 PYBIND11_MODULE(_sinew, m) {
   using namespace sinew::python;
   m.doc() = "The compiled part of the package sinew; see sinew.Simulation.";
-  m.attr("version") = SINEW_VERSION;
+  m.attr("version") = sinew::version();
   py::register_exception_translator([](std::exception_ptr p) {
     try {
       if (p) std::rethrow_exception(p);
@@ -135,4 +135,5 @@ PYBIND11_MODULE(_sinew, m) {
   });
   add_simulation(m);
   add_tasks(m);
+  add_view(m);
 }

@@ -67,5 +67,6 @@ class CtrlC {
 
 void add_simulation(py::module_& m);
 void add_tasks(py::module_& m);
+void add_view(py::module_& m);
 
 }  // namespace sinew::python

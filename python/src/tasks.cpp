@@ -1,5 +1,6 @@
 // Whole tasks: runs, identification, validation, convergence. Results go to Python as JSON, the
 // format of the command line, or as dictionaries of the same names.
+#include <cstring>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -44,10 +45,17 @@ void tell(const std::optional<Done>& done, double share, double remaining) {
   (*done)(share, remaining);
 }
 
-std::string summary_of(RunResult result) {
+py::array_t<double> array_of(const std::vector<Vec3>& points) {
+  py::array_t<double> out({static_cast<py::ssize_t>(points.size()), py::ssize_t{3}});
+  if (!points.empty()) std::memcpy(out.mutable_data(), points.data(), points.size() * sizeof(Vec3));
+  return out;
+}
+
+// summary.json, the nodes at rest, the nodes at the end.
+py::tuple to_python(const RunResult& result) {
   nlohmann::ordered_json out = to_json(result.summary);
   if (result.error) out["error"] = result.error->what();
-  return out.dump();
+  return py::make_tuple(out.dump(), array_of(result.rest_position), array_of(result.position));
 }
 
 RunOptions run_options(const std::string& out, bool force, const std::atomic<bool>* stop,
@@ -64,16 +72,16 @@ RunOptions run_options(const std::string& out, bool force, const std::atomic<boo
   return options;
 }
 
-std::string run(const SceneSource& source, const std::string& out, bool force, int threads,
-                const std::optional<Done>& done) {
+py::tuple run(const SceneSource& source, const std::string& out, bool force, int threads,
+              const std::optional<Done>& done) {
   const Scene scene = scene_of(source);
-  return summary_of(without_gil(threads, [&](const std::atomic<bool>* stop) {
+  return to_python(without_gil(threads, [&](const std::atomic<bool>* stop) {
     return run_scene(scene, run_options(out, force, stop, done));
   }));
 }
 
-std::string resume(const std::string& folder, int threads, const std::optional<Done>& done) {
-  return summary_of(without_gil(threads, [&](const std::atomic<bool>* stop) {
+py::tuple resume(const std::string& folder, int threads, const std::optional<Done>& done) {
+  return to_python(without_gil(threads, [&](const std::atomic<bool>* stop) {
     return resume_run(folder, run_options({}, false, stop, done));
   }));
 }

@@ -1,9 +1,10 @@
 """Sinew as others take it: the examples are built outside the tree and run.
 
-    install_test.py static    `cmake --install` of this build, moved elsewhere: find_package, pkg-config
-    install_test.py shared    FetchContent and add_subdirectory in a host's build with
-                              BUILD_SHARED_LIBS=ON; that installed: find_package, pkg-config, and
-                              the symbols that libsinew.so shows
+    install_test.py installed    `cmake --install` of this build, moved elsewhere: the program; the
+                                 shared library by find_package, pkg-config and ctypes, and the
+                                 symbols that it shows; the archive by find_package
+    install_test.py host         FetchContent and add_subdirectory in a host's build, static and
+                                 shared: configured, and the lowest rooms built
 
 Environment (ctest sets it): SINEW_BUILD, SINEW_VERSION, CMAKE, CXX, LAUNCHER.
 """
@@ -22,6 +23,7 @@ BUILD = pathlib.Path(os.environ["SINEW_BUILD"])
 CMAKE = os.environ.get("CMAKE", "cmake")
 CXX = os.environ.get("CXX", "g++")
 EXAMPLES = ("hello", "tool_in_a_loop", "own_mesh", "two_worlds", "in_c")
+ABI = ROOT / "tests" / "install" / "abi.txt"
 NUMBER = r"(-?\d+(?:\.\d+)?)"
 # Other libraries' headers that a program with Sinew does not need.
 INSIDE = ("eigen", "tbb", "fmt", "hwy", "pugixml", "toml", "xxhash", "nlohmann")
@@ -93,6 +95,7 @@ def run_examples(find, env=None):
 
 def by_find_package(prefix, folder):
     """The examples as a user builds them: copied away, with find_package alone."""
+    folder.mkdir()
     sources, build = folder / "examples", folder / "build"
     shutil.copytree(ROOT / "examples", sources)
     run(CMAKE, "-G", "Ninja", "-S", sources, "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}",
@@ -145,7 +148,8 @@ def check_headers(prefix, folder):
 
 
 def check_symbols(prefix):
-    """libsinew.so shows what the public headers mark SINEW_API, and nothing else."""
+    """libsinew.so shows what the public headers mark SINEW_API, and nothing else. None of the
+    symbols of its binary interface (abi.txt) is missing."""
     marked = set()
     for header in (prefix / "include" / "sinew").glob("*.h"):
         text = header.read_text()
@@ -159,8 +163,17 @@ def check_symbols(prefix):
         match = re.match(r"(?:(?:typeinfo|typeinfo name|vtable) for )?sinew::(\w+)", name)
         match = match or re.fullmatch(r"(sinew_\w+)", name)  # of C
         check(match and match[1] in marked, f"{name} is not of the interface ({sorted(marked)})")
-    dynamic = run("readelf", "-d", library)
-    check("[libsinew.so.0]" in dynamic, "its SONAME")
+    known, soname = ABI.read_text().split(), re.search(r"\[libsinew\.so\.(\d+)\]",
+                                                     run("readelf", "-d", library))
+    check(soname and soname[1] == known[0], f"its SONAME is that of {ABI}")
+    symbols = {line.split()[2] for line in run("nm", "-D", "--defined-only", library).splitlines()}
+    if os.environ.get("SINEW_UPDATE_ABI"):
+        ABI.write_text("\n".join([soname[1], *sorted(symbols)]) + "\n")
+        return
+    gone, new = set(known[1:]) - symbols, symbols - set(known[1:])
+    check(not gone, f"programs that were linked before need {sorted(gone)}: raise SINEW_ABI in "
+          "cmake/SinewLibrary.cmake, then SINEW_UPDATE_ABI=1 ctest -R install.installed")
+    check(not new, f"{sorted(new)} are new: SINEW_UPDATE_ABI=1 ctest -R install.installed")
 
 
 def check_program(prefix):
@@ -171,39 +184,56 @@ def check_program(prefix):
         check((prefix / "share" / name).is_file(), f"share/{name}")
 
 
-def static(folder):
+def archive_by_find_package(prefix, folder):
+    """The archive, for a program that carries everything in itself."""
+    folder.mkdir()
+    shutil.copy(ROOT / "examples" / "hello" / "hello.cpp", folder)
+    (folder / "CMakeLists.txt").write_text(
+        "cmake_minimum_required(VERSION 3.25)\nproject(hello LANGUAGES CXX)\n"
+        "find_package(Sinew CONFIG REQUIRED COMPONENTS static)\n"
+        "add_executable(hello hello.cpp)\n"
+        "target_link_libraries(hello PRIVATE Sinew::sinew_static)\n")
+    run(CMAKE, "-G", "Ninja", "-S", folder, "-B", folder / "build", f"-DCMAKE_PREFIX_PATH={prefix}",
+        f"-DCMAKE_CXX_COMPILER={CXX}")
+    run(CMAKE, "--build", folder / "build")
+    check("libsinew" not in run("ldd", folder / "build" / "hello"), "it carries the library")
+    check_hello(run(folder / "build" / "hello"))
+
+
+def installed(folder):
     run(CMAKE, "--install", BUILD, "--prefix", folder / "first")
     prefix = folder / "moved" / "sinew"  # the package may lie anywhere
     prefix.parent.mkdir()
     (folder / "first").rename(prefix)
     check_program(prefix)
     check_headers(prefix, folder)
-    by_find_package(prefix, folder)
-    by_pkg_config(prefix, folder)
-
-
-def shared(folder):
-    host, sources = folder / "host", ROOT / "tests" / "install" / "host"
-    # Plain code: that it is the interface, not the speed, is looked at here.
-    common = ("-G", "Ninja", "-S", sources, f"-DSINEW_SOURCE={ROOT}", "-DBUILD_SHARED_LIBS=ON",
-              f"-DEXAMPLES={ROOT / 'examples'}", f"-DCMAKE_CXX_COMPILER={CXX}",
-              "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0",
-              f"-DCMAKE_CXX_COMPILER_LAUNCHER={os.environ.get('LAUNCHER', '')}")
-    run(CMAKE, *common, "-B", folder / "subdirectory", "-DBY=subdirectory")
-    run(CMAKE, *common, "-B", host, "-DSINEW_INSTALL=ON")
-    run(CMAKE, "--build", host)
-    run_examples(lambda name: host / "examples" / name / name)
-    prefix = folder / "prefix"
-    run(CMAKE, "--install", host, "--prefix", prefix)
     check_symbols(prefix)
+    by_find_package(prefix, folder / "find_package")
+    archive_by_find_package(prefix, folder / "archive")
+    by_pkg_config(prefix, folder)
     library = next(iter(prefix.rglob("libsinew.so.0")))
     check_by_ctypes(run(sys.executable, ROOT / "examples" / "by_ctypes" / "by_ctypes.py", library))
-    by_find_package(prefix, folder)
-    by_pkg_config(prefix, folder)
+
+
+def host(folder):
+    sources = ROOT / "tests" / "install" / "host"
+    for way in ("subdirectory", "fetched"):
+        for shared in ("OFF", "ON"):
+            build = folder / f"{way}-{shared}"
+            # Plain code: the interface is looked at here, not the speed.
+            run(CMAKE, "-G", "Ninja", "-S", sources, "-B", build, f"-DSINEW_SOURCE={ROOT}",
+                f"-DBUILD_SHARED_LIBS={shared}", f"-DEXAMPLES={ROOT / 'examples'}",
+                f"-DBY={way}", f"-DSINEW_INSTALL={shared}", f"-DCMAKE_CXX_COMPILER={CXX}",
+                "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0")
+            plan = (build / "build.ninja").read_text()
+            for library, wanted in (("libsinew.so", shared == "ON"), ("libsinew.a", shared == "OFF")):
+                check((f"{library}" in plan) == wanted, f"{way}, shared {shared}: {library}")
+            check(way == "subdirectory" or "examples/hello/hello" in plan, "the examples")
+    run(CMAKE, "--build", build, "--target", "sinew_mesh")
 
 
 def main(argv):
-    kinds = {"static": static, "shared": shared}
+    kinds = {"installed": installed, "host": host}
     if len(argv) != 2 or argv[1] not in kinds:
         print(__doc__, file=sys.stderr)
         return 2

@@ -7,7 +7,8 @@ import unittest
 import numpy as np
 import sinew
 from python_support import PythonTest
-from sinew.calibration import _Curve, calibrate, read_curve
+from sinew.calibration import calibrate, read_curve
+from sinew.calibration.fit import _Curve
 from sinew.study import Range
 
 YOUNG = Range(1e3, 50e3, log=True)

@@ -244,6 +244,19 @@ class States(PythonTest):
         with self.assertRaises(sinew.InputError):
             sim.restore(state[:100])
 
+    def test_arrays_after_a_change_are_whole(self):
+        sim = sinew.Simulation(BEAM)
+        before = sim.positions
+        shape = before.shape
+        state = sim.save()
+        sim.advance(0.02)
+        sim.restore(state)
+        self.assertEqual(sim.positions.shape, shape)
+        np.testing.assert_array_equal(sim.positions, sim.rest_positions)
+        sim.material("beam").change(young=100e3)
+        self.assertEqual(sim.positions.shape, shape)
+        self.assertEqual(sim.velocities.shape, shape)
+
     def test_errors_have_place_and_remedy(self):
         with self.assertRaises(sinew.InputError) as caught:
             sinew.Simulation(self.write("bad.toml", BEAM.replace("0.45", "0.7")))

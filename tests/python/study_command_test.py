@@ -35,6 +35,7 @@ class StudyCommandTest(PythonTest):
         result = self.sinew("study.toml", "--workers", "2")
         self.assertIn("6 of 6 runs finished: out/study/table.csv", result.stdout)
         self.assertIn("6 of 6 runs", result.stderr)
+        self.assertIn("<h2>Runs</h2>", (self.dir / "out/study/report.html").read_text())
         rows = (self.dir / "out/study/table.csv").read_text().splitlines()
         self.assertEqual(len(rows), 7)
         answer = json.loads(self.sinew("study.toml", "--json", "--quiet").stdout)
@@ -47,8 +48,8 @@ class StudyCommandTest(PythonTest):
         self.assertEqual(set(answer["effects"]), {"beam.young", "beam.poisson"})
 
     def test_mistakes(self):
-        for text, what in (("", "a study has a scene"), ("scene = 1 2", "study"),
-                           ('scene = "beam.toml"\nvary = 1\n', "table [vary]"),
+        for text, what in (("", "'scene' is missing"), ("scene = 1 2", "study"),
+                           ('scene = "beam.toml"\nvary = 1\n', "table [vary] is missing"),
                            ('scene = "beam.toml"\n[vary]\n"beam.young" = 3\n', "no range"),
                            ('scenes = "a"\n', "unknown key 'scenes'"),
                            ('scene = "beam.toml"\n[vary]\n"beam.yuong" = [3.0]\n', "yuong")):

@@ -38,6 +38,44 @@ def dies_always(result):
     os.kill(os.getpid(), signal.SIGKILL)
 
 
+@unittest.skipIf(importlib.util.find_spec("h5py") is None, "h5py is not installed")
+class FieldsTest(PythonTest):
+    def test_fields_of_every_run(self):
+        import h5py
+        study = Study(beam(duration=0.02), {"beam.young": [50e3, 100e3]})
+        study.run(self.dir / "study")  # first without: the rows alone
+        table = study.run(self.dir / "study", fields=True)
+        self.assertEqual(len(table.finished), 2)
+        result = sinew.run(beam(duration=0.02), set={"beam.young": 100e3})
+        with h5py.File(self.dir / "study" / "fields.h5") as file:
+            self.assertEqual(sorted(file), ["000000", "000001"])
+            run = file["000001"]
+            self.assertEqual(run.attrs["beam.young"], 100e3)
+            np.testing.assert_array_equal(run["positions"], result.positions)
+            np.testing.assert_array_equal(run["rest_positions"], result.rest_positions)
+        before = (self.dir / "study/runs/000001.npz").stat().st_mtime_ns
+        study.run(self.dir / "study", fields=True)
+        self.assertEqual((self.dir / "study/runs/000001.npz").stat().st_mtime_ns, before)
+
+
+class ReportTest(PythonTest):
+    def test_a_page_of_a_study(self):
+        study = Study(beam(duration=0.02), {"beam.young": Range(50e3, 200e3, grid=3),
+                                            "beam.poisson": [0.3, 0.7]})
+        table = study.run(self.dir / "study")
+        page = sinew.report.of_study(study, table, "A <study>", "tip.uy",
+                                     {"beam.young": {"mean": 1.0, "spread": 0.1}})
+        self.assertIn("A &lt;study&gt;", page)
+        self.assertIn("3 of 6 runs finished", page)
+        self.assertIn("<h2>Failed</h2>", page)
+        self.assertIn("<h2>Effects on tip.uy</h2>", page)
+        if importlib.util.find_spec("matplotlib") is not None:
+            self.assertEqual(page.count("<svg"), 2)
+            self.assertEqual(page, sinew.report.of_study(
+                study, table, "A <study>", "tip.uy",
+                {"beam.young": {"mean": 1.0, "spread": 0.1}}))
+
+
 class DesignTest(PythonTest):
     def test_grid(self):
         points = design_of("grid", VARY, 0, 0)

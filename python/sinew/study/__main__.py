@@ -11,48 +11,29 @@ import os
 import pathlib
 import sys
 import time
-import tomllib
 from collections.abc import Mapping
 from typing import Any
 
-from ..errors import Error, InputError
-from .designs import Range, Values
+from .. import report as pages
+from ..errors import InputError
+from ..shell import guarded, read_toml, show, table_of, values_of
 from .point import run_from_folder
 from .sensitivity import Morris, Sobol
 from .study import Study
 from .table import Table
 
-KEYS = {"scene", "design", "samples", "seed", "trajectories", "vary", "set", "result"}
-
-
-def values_of(key: str, value: Any, file: str) -> Values:
-    """A range or a list of the file."""
-    if isinstance(value, list) and value:
-        return value
-    if isinstance(value, dict):
-        unknown = set(value) - {"low", "high", "log", "grid", "values"}
-        if not unknown and "values" in value:
-            return values_of(key, value["values"], file)
-        if not unknown and {"low", "high"} <= set(value):
-            return Range(**value)
-    raise InputError(f"'{key}' in [vary] is no range and no list",
-                     "{ low = 1e3, high = 1e4, log = true }, or [0.3, 0.4]", file)
+PAGE = "docs/study.md"
+KEYS = {"scene", "design", "samples", "seed", "trajectories", "vary", "set", "result", "fields"}
 
 
 def read_study(file: str) -> tuple[Study, dict[str, Any]]:
     """The study of a file, and its table."""
-    path = pathlib.Path(file)
-    try:
-        table = tomllib.loads(path.read_text(encoding="utf-8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
-        raise InputError(str(error), "see docs/study.md", file) from None
-    for key in table:
-        if key not in KEYS:
-            raise InputError(f"unknown key '{key}'", f"one of {', '.join(sorted(KEYS))}", file)
-    if "scene" not in table or not isinstance(table.get("vary"), dict):
-        raise InputError("a study has a scene and a table [vary]", "see docs/study.md", file)
-    vary = {key: values_of(key, value, file) for key, value in table["vary"].items()}
-    return Study(path.parent / table["scene"], vary, set=table.get("set", {})), table
+    table = read_toml(file, KEYS, PAGE)
+    if "scene" not in table:
+        raise InputError("the key 'scene' is missing", f"see {PAGE}", file)
+    vary = {key: values_of(key, value, file)
+            for key, value in table_of(table, "vary", file, PAGE).items()}
+    return Study(pathlib.Path(file).parent / table["scene"], vary, set=table.get("set", {})), table
 
 
 def design_of_file(table: Mapping[str, Any]) -> str | Morris | Sobol:
@@ -65,12 +46,10 @@ def design_of_file(table: Mapping[str, Any]) -> str | Morris | Sobol:
 
 
 def show_progress(done: int, count: int, left: float) -> None:
-    terminal = sys.stderr.isatty()
     text = f"{done} of {count} runs"
     if 0 <= left and done < count:
         text += f", about {left:.0f} s left" if left < 120 else f", about {left / 60:.0f} min left"
-    print(("\r\033[K" if terminal else "") + text, end="" if terminal and done < count else "\n",
-          file=sys.stderr, flush=True)
+    show(text, done == count)
 
 
 class Slowly:
@@ -104,14 +83,18 @@ def study(options: argparse.Namespace) -> int:
     out = options.out or os.path.join("out", pathlib.Path(options.file).stem)
     table = work.run(out, design=design_of_file(spec), samples=spec.get("samples", 100),
                      seed=spec.get("seed", 0), on=options.on, workers=options.workers,
-                     progress=None if options.quiet else Slowly())
+                     fields=bool(spec.get("fields", False)), progress=None if options.quiet else Slowly())
     answer = report(work, table, spec, out)
+    page = pathlib.Path(out) / "report.html"
+    page.write_text(pages.of_study(work, table, pathlib.Path(options.file).stem,
+                                   spec.get("result"), answer.get("effects", {})), encoding="utf-8")
+    answer["report"] = str(page)
     if options.json:
         print(json.dumps(answer, indent=2))
     elif not options.quiet:
         for key, effect in answer.get("effects", {}).items():
             print(f"{key}: " + ", ".join(f"{name} {value:.4g}" for name, value in effect.items()))
-        print(f"{answer['finished']} of {answer['runs']} runs finished: {answer['table']}")
+        print(f"{answer['finished']} of {answer['runs']} runs finished: {answer['table']}, {page}")
     for row in table.failed.rows[:5]:
         print(f"run {row['run']} failed: {row['error'].splitlines()[0]}", file=sys.stderr)
     if len(table.failed) > 5:
@@ -131,18 +114,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--workers", type=int, default=0)
     parser.add_argument("--json", action="store_true")
     parser.add_argument("-q", "--quiet", action="store_true")
-    try:
-        return study(parser.parse_args(arguments))
-    except KeyboardInterrupt:
-        print("\nsinew: interrupted; the same command does the rest", file=sys.stderr)
-        return 130
-    except Error as error:
-        print(f"sinew: {error}", file=sys.stderr)
-        from ..errors import _KINDS
-        return next((code for code, kind in _KINDS.items() if isinstance(error, kind)), 1)
-    except OSError as error:
-        print(f"sinew: {error}\n  remedy: check the file and its permissions", file=sys.stderr)
-        return 6
+    return guarded(lambda: study(parser.parse_args(arguments)), "; the same command does the rest")
 
 
 if __name__ == "__main__":

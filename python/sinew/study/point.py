@@ -10,11 +10,14 @@ import pickle
 from collections.abc import Callable, Mapping
 from typing import Any
 
+import numpy as np
+
 from ..errors import Error
 from ..scene import Path, Scene
 from ..tasks import RunResult, run
 
 Measure = Callable[[RunResult], Mapping[str, float]]
+FIELDS = "fields"  # of a row on its way to the folder
 
 
 @dataclasses.dataclass(frozen=True)
@@ -24,6 +27,7 @@ class Task:
     scene: Scene | Path
     settings: Mapping[str, Any]
     measure: Measure | None
+    fields: bool = False  # the rows carry the nodes' positions, for write_row()
 
     def run(self, number: int, point: Mapping[str, Any]) -> dict[str, Any]:
         """The row of the table: the point, the results, and how it ended."""
@@ -32,6 +36,9 @@ class Task:
             result = run(self.scene, set={**self.settings, **point}, threads=1)
             row["status"], row["error"] = result.status, result.error
             row.update(results_of(result))
+            if self.fields:
+                row[FIELDS] = {"rest_positions": result.rest_positions,
+                               "positions": result.positions}
             if self.measure is not None and result.status == "finished":
                 row.update({name: float(v) for name, v in self.measure(result).items()})
         except Error as error:
@@ -64,8 +71,19 @@ def row_file(folder: pathlib.Path, number: int) -> pathlib.Path:
     return folder / "runs" / f"{number:06}.json"
 
 
-def write_row(folder: pathlib.Path, row: Mapping[str, Any]) -> None:
-    """Complete or absent, also if two processes write the same row."""
+def field_file(folder: pathlib.Path, number: int) -> pathlib.Path:
+    return folder / "runs" / f"{number:06}.npz"
+
+
+def write_row(folder: pathlib.Path, row: dict[str, Any]) -> None:
+    """Complete or absent, also if two processes write the same row. Takes the fields out of it."""
+    fields = row.pop(FIELDS, None)
+    if fields is not None:  # first: a row that is there has its fields
+        target = field_file(folder, row["run"])
+        part = target.with_suffix(f".{os.getpid()}.tmp")
+        with open(part, "wb") as out:
+            np.savez(out, **fields)
+        part.replace(target)
     file = row_file(folder, row["run"])
     fresh = file.with_suffix(f".{os.getpid()}.tmp")
     fresh.write_text(json.dumps(row), encoding="utf-8")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 import json
 import os
@@ -18,7 +19,8 @@ from ..scene import Path, Scene, source_of
 from .. import _sinew
 from .designs import Point, Range, Values, design_of
 from .engines import Engine, engine_of
-from .point import Measure, Task, row_file, write_row
+from .fields import need_h5py, write_fields
+from .point import Measure, Task, field_file, row_file, write_row
 from .sensitivity import Morris, Sobol
 from .table import Table
 
@@ -48,15 +50,16 @@ class Study:
 
     def run(self, folder: Path, *, design: str | Morris | Sobol = "grid", samples: int = 100,
             seed: int = 0, on: str | Engine = "local", workers: int = 0,
-            progress: Progress | None = None) -> Table:
+            fields: bool = False, progress: Progress | None = None) -> Table:
         """Does the runs that are not done yet, and gives the table of all.
 
         Args:
-            folder: where the study lies: study.json, runs/, table.csv, failures.csv.
+            folder: where the study lies: study.json, runs/, table.csv, failures.csv, fields.h5.
             design: "grid", "latin", "sobol", or an object of Morris or Sobol.
             samples, seed: of "latin" and "sobol".
             on: "local"; the address of a Dask scheduler, "tcp://host:8786"; "slurm"; or an Engine.
             workers: processes, or tasks of the job array; 0: as many as fit.
+            fields: also fields.h5, the nodes' positions at the end of every run (needs h5py).
 
         Raises:
             UsageError: the folder holds another study, or a value of `vary` cannot be used.
@@ -65,12 +68,18 @@ class Study:
         points = (design_of(design, self.vary, samples, seed) if isinstance(design, str)
                   else design.points(self.vary))
         place = pathlib.Path(folder).resolve()
+        if fields:
+            need_h5py()
+        self.task = dataclasses.replace(self.task, fields=fields)
         # A mistake in the scene or a key is found here, not by every run.
         _sinew.duration_of(source_of(self.task.scene, {**self.task.settings, **points[0]}))
         self._prepare(place, points)
         rows = {number: row for number in range(len(points))
-                if (row := self._row(place, number)) is not None}
+                if (row := self._row(place, number)) is not None and
+                (not fields or row["status"] != "finished" or field_file(place, number).exists())}
         left = [(number, point) for number, point in enumerate(points) if number not in rows]
+        for number, _ in left:  # of a study that kept no fields
+            row_file(place, number).unlink(missing_ok=True)
         start, before = time.monotonic(), len(rows)
         if progress is not None:
             progress(len(rows), len(points), -1.0)
@@ -83,6 +92,8 @@ class Study:
                     progress(len(rows), len(points), per_run * (len(points) - len(rows)))
         table = Table(list(rows.values()))
         table.write(place / "table.csv")
+        if fields:
+            write_fields(place, table.rows, list(self.vary))
         if table.failed:
             table.failed.write(place / "failures.csv")
         else:

@@ -166,7 +166,7 @@ using namespace sinew::capi;
 using sinew::Simulation;
 
 const char* sinew_version(void) {
-  return SINEW_VERSION;
+  return sinew::version();
 }
 const char* sinew_error(void) {
   return last_error.c_str();

@@ -88,6 +88,14 @@ void Session::adopt(Simulation simulation) {
   show({}, false);
 }
 
+void Session::restore(const SavedState& state) {
+  simulation_.restore(state);
+  world().choose_steps();
+  running_ = false;
+  changed();
+  show(cut_, springs_);
+}
+
 void Session::show(const Cut& cut, bool springs) {
   cut_ = cut;
   springs_ = springs;
@@ -110,6 +118,11 @@ void Session::execute(const SetSprings& c) {
 
 void Session::execute(const SaveState& c) {
   c.done(format_frame(model(), world().run(), force(), io::VtuEncoding::zlib));
+}
+
+void Session::execute(const HandBack& c) {
+  let_go();
+  c.done(simulation_.save().bytes());
 }
 
 namespace {

@@ -111,8 +111,14 @@ struct SaveState {
   std::function<void(std::string)> done;
 };
 
+// Lets go of the hands and the ball, and calls `done` on the simulation's thread with the state as
+// of Simulation::save().
+struct HandBack {
+  std::function<void(std::string)> done;
+};
+
 using Command = std::variant<Play, Cancel, Advance, Reset, Load, Open, SetMaterial, SetStepping,
                              SetGravity, SetTimeScale, SetQuantity, Grab, Drag, Release, MoveBall,
-                             RemoveBall, SetCut, SetSprings, SetCompare, SaveState>;
+                             RemoveBall, SetCut, SetSprings, SetCompare, SaveState, HandBack>;
 
 }  // namespace sinew::live

@@ -80,8 +80,10 @@ class ClockPace {
 
 }  // namespace
 
-Runner::Runner(const Scene& scene, std::function<void()> published)
+Runner::Runner(const Scene& scene, std::function<void()> published,
+               const std::optional<SavedState>& state)
     : session_(scene), published_(std::move(published)) {
+  if (state) session_.restore(*state);
   publish();
   thread_ = std::thread([this] { work(); });
 }

@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -29,7 +30,9 @@ class Runner {
  public:
   // Builds the scene before it returns; throws the errors of Session. `published` is called on the
   // session's thread after every new frame or status, and must be quick.
-  explicit Runner(const Scene& scene, std::function<void()> published = {});
+  // With a state it goes on from there (Session::restore).
+  explicit Runner(const Scene& scene, std::function<void()> published = {},
+                  const std::optional<SavedState>& state = {});
   ~Runner();  // ends the thread after the current step
   Runner(const Runner&) = delete;
   Runner& operator=(const Runner&) = delete;

@@ -60,6 +60,10 @@ class Session {
   // Replaces the scene by one from build(); pauses.
   void adopt(Simulation simulation);
 
+  // Goes on from a state of Simulation::save() of the same scene, with the steps of this session;
+  // paused. Throws Error(input) if it belongs to another scene.
+  void restore(const SavedState& state);
+
   // Shows the error in status() until the next command that succeeds.
   void report(const Error& error);
 
@@ -90,6 +94,7 @@ class Session {
   void execute(const SetSprings& c);
   void execute(const SetCompare& c);
   void execute(const SaveState& c);
+  void execute(const HandBack& c);
 
   // `leader`: the session that this one is compared with; it takes the leader's stepper.
   Session(const Scene& scene, const Session* leader);

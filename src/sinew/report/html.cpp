@@ -1,6 +1,7 @@
 #include "sinew/report/html.h"
 
 #include <fmt/format.h>
+#include <sinew/version.h>
 
 #include <algorithm>
 
@@ -122,7 +123,7 @@ std::string Page::html() const {
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
       "<title>{0}</title>\n<style>{1}</style>\n</head>\n<body>\n<h1>{0}</h1>\n{2}{3}"
       "<footer>Sinew {4}</footer>\n</body>\n</html>\n",
-      escaped(title_), kStyle, contents, body_, SINEW_VERSION);
+      escaped(title_), kStyle, contents, body_, version());
 }
 
 }  // namespace sinew::report

@@ -128,6 +128,11 @@ class Runner {
     count_time();
     save();
     result.summary = finish_summary(result.status);
+    const auto nodes_of_bodies = [&](const std::vector<Vec3>& x) {
+      return std::vector<Vec3>(x.begin(), x.begin() + world_.body_nodes());
+    };
+    result.rest_position = nodes_of_bodies(world_.model().rest_position);
+    result.position = nodes_of_bodies(run_.state.position);
     return result;
   }
 

@@ -7,8 +7,10 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "sinew/base/error.h"
+#include "sinew/base/vec.h"
 #include "sinew/run/summary.h"
 #include "sinew/scene/scene.h"
 
@@ -43,7 +45,8 @@ struct RunOptions {
 struct RunResult {
   RunStatus status = RunStatus::finished;
   Summary summary;
-  std::optional<Error> error;  // of a run that diverged
+  std::optional<Error> error;                 // of a run that diverged
+  std::vector<Vec3> rest_position, position;  // of the bodies' nodes, at the end [m]
 };
 
 // Writes scene.toml (the scene with its overrides, from which the run can be resumed), NAME.pvd and

@@ -1,6 +1,7 @@
 #include "sinew/run/summary.h"
 
 #include <fmt/format.h>
+#include <sinew/version.h>
 
 #include <algorithm>
 #include <cmath>
@@ -209,7 +210,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
   for (const PinReading& p : s.pins)
     pins[p.name] = {{"force", vec(p.force)}, {"torque", vec(p.torque)}};
   nlohmann::ordered_json json = {
-      {"version", SINEW_VERSION},
+      {"version", version()},
       {"status", word_of(s.status)},
       {"scene", s.scene},
       {"title", s.title},

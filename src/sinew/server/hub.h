@@ -46,7 +46,8 @@ class Hub {
 
   Door door;
   Library library;
-  bool gallery;  // whether pages start with it
+  bool gallery;         // whether pages start with it
+  bool framed = false;  // whether a page of this machine may show ours in a frame
   std::atomic<int> connections{0};
   int uploads = 0;                       // of files, in progress
   std::unique_ptr<live::Runner> runner;  // null: the server is shutting down

@@ -41,7 +41,9 @@ constexpr int most_uploads = 2;  // at a time
 constexpr const char* content_policy =
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src 'self' data: blob:; media-src blob:; connect-src 'self'; worker-src blob:; "
-    "base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
+    "base-uri 'none'; form-action 'none'; frame-ancestors ";
+constexpr const char* frames_of_this_machine =
+    "http://localhost:* http://127.0.0.1:* https://localhost:* https://127.0.0.1:* vscode-webview:";
 
 std::string_view view(beast::string_view text) {
   return {text.data(), text.size()};
@@ -197,9 +199,10 @@ class Visitor : public std::enable_shared_from_this<Visitor> {
     response_.emplace(status, 11);
     response_->set(http::field::content_type, type);
     response_->set(http::field::cache_control, "no-store");
-    response_->set("Content-Security-Policy", content_policy);
+    response_->set("Content-Security-Policy",
+                   content_policy + std::string(hub_.framed ? frames_of_this_machine : "'none'"));
     response_->set("X-Content-Type-Options", "nosniff");
-    response_->set("X-Frame-Options", "DENY");
+    if (!hub_.framed) response_->set("X-Frame-Options", "DENY");
     response_->set("Referrer-Policy", "no-referrer");
     response_->set("Cross-Origin-Resource-Policy", "same-origin");
     response_->keep_alive(keep_alive_);
@@ -238,7 +241,9 @@ class Server::Impl {
         goodbye_(io_) {
     listen(options);
     hub_.door.port = acceptor_.local_endpoint().port();
-    hub_.runner = std::make_unique<live::Runner>(scene, [this] { wake(); });
+    hub_.framed = options.framed;
+    hub_.runner = std::make_unique<live::Runner>(
+        scene, [this] { wake(); }, options.state);
     accept();
   }
   // The simulation's thread ends first, while the object that it wakes exists.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "sinew/live/runner.h"
@@ -19,6 +20,8 @@ struct Options {
   int most_connections = 64;       // further ones are closed at once
   std::filesystem::path scenes;    // folder of the gallery; empty: it has none
   bool gallery = false;            // pages start with the gallery
+  bool framed = false;  // pages of this machine, such as a notebook, may show it in a frame
+  std::optional<SavedState> state;  // of the scene, to go on from
 };
 
 class Server {

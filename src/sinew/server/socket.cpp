@@ -1,5 +1,6 @@
 #include "sinew/server/socket.h"
 
+#include <sinew/version.h>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/core.hpp>
 #include <boost/beast/websocket.hpp>
@@ -25,7 +26,7 @@ class BeastSocket final : public Socket, public std::enable_shared_from_this<Bea
       : hub_(hub),
         place_(std::move(place)),
         stream_(std::move(stream)),
-        viewer_(SINEW_VERSION, hub.gallery) {}
+        viewer_(version(), hub.gallery) {}
   ~BeastSocket() override { hub_.leave(this); }
 
   void start(const http::request<http::empty_body>& request) {

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <sinew/version.h>
 
 #include "sinew/base/error.h"
 #include "sinew/report/table.h"
@@ -155,7 +156,7 @@ nlohmann::ordered_json to_json(const BenchResult& result) {
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const BenchRow& r : result.rows) rows.push_back(json_of(r));
   return {{"schema", schema},
-          {"version", SINEW_VERSION},
+          {"version", version()},
           {"machine",
            {{"processor", m.processor},
             {"cores", m.cores},

@@ -1,6 +1,7 @@
 #include "sinew/study/converge.h"
 
 #include <fmt/format.h>
+#include <sinew/version.h>
 
 #include <algorithm>
 #include <cmath>
@@ -171,8 +172,8 @@ nlohmann::ordered_json to_json(const ConvergeResult& r) {
                        {"error", t.error},
                        {"converges", t.converges}};
   }
-  return {{"version", SINEW_VERSION}, {"scene", r.scene}, {"title", r.title},
-          {"stopped", r.stopped},     {"levels", levels}, {"probes", probes},
+  return {{"version", version()},  {"scene", r.scene}, {"title", r.title},
+          {"stopped", r.stopped},  {"levels", levels}, {"probes", probes},
           {"warnings", r.warnings}};
 }
 

@@ -1,5 +1,6 @@
 // The results of the validation suite: as text, as a page, as JSON.
 #include <fmt/format.h>
+#include <sinew/version.h>
 
 #include <algorithm>
 #include <cmath>
@@ -319,7 +320,7 @@ nlohmann::ordered_json to_json(const SuiteResult& result) {
   nlohmann::ordered_json medians = nlohmann::ordered_json::object();
   for (const LawChoice& law : law_choices())
     medians[law.name] = report::finite_or_null(median_error_coarsest(result, law.name));
-  return {{"version", SINEW_VERSION},  {"holds", result.holds()},    {"stopped", result.stopped},
+  return {{"version", version()},      {"holds", result.holds()},    {"stopped", result.stopped},
           {"seconds", result.seconds}, {"median_coarsest", medians}, {"cases", cases}};
 }
 

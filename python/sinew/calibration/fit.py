@@ -6,17 +6,17 @@ import dataclasses
 import math
 import os
 import pathlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from .errors import DivergedError, UsageError
-from .handles import Floats, Obstacle, Pin, Point, xyz
-from .scene import Path, Scene, overrides
-from .simulation import Settings, Simulation
-from .study.designs import Range
+from ..errors import DivergedError, UsageError
+from ..handles import Floats, Obstacle, Pin, Point, xyz
+from ..scene import Path, Scene, overrides
+from ..simulation import Settings, Simulation
+from ..study.designs import Range
 
 # Shares of a parameter's range: the step of finite differences, and the width of an interval that
 # says nothing.
@@ -59,11 +59,13 @@ class Calibration:
         Raises:
             ImportError: matplotlib is not installed.
         """
-        import matplotlib  # type: ignore[import]
-        matplotlib.use("Agg")
-        from matplotlib import pyplot
-        figure, (curve, rest) = pyplot.subplots(
-            2, 1, sharex=True, figsize=(6, 6), height_ratios=(3, 1), layout="constrained")
+        self.figure().savefig(os.fspath(file))
+
+    def figure(self) -> Any:
+        """The picture of plot(), a figure of matplotlib."""
+        from matplotlib.figure import Figure  # type: ignore[import]
+        figure = Figure(figsize=(6, 6), layout="constrained")
+        curve, rest = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
         x = 1e3 * self.displacement
         curve.plot(x, self.measured, "o", label="measured", color="#444")
         curve.plot(x, self.fitted, "-", label="Sinew", color="#c0392b")
@@ -77,8 +79,7 @@ class Calibration:
         rest.plot(x, self.residual, "o-", color="#444")
         rest.set_xlabel("displacement [mm]")
         rest.set_ylabel("residual [N]")
-        figure.savefig(os.fspath(file))
-        pyplot.close(figure)
+        return figure
 
     def __str__(self) -> str:
         lines = [f"{key}: {e.value:.5g}  ({e.low:.5g} to {e.high:.5g})"
@@ -165,7 +166,8 @@ class _Scale:
 
 def calibrate(scene: Scene | Path, data: Path | tuple[npt.ArrayLike, npt.ArrayLike], *,
               moved: str, direction: Point, parameters: Mapping[str, Range],
-              set: Settings | None = None, confidence: float = 0.95) -> Calibration:
+              set: Settings | None = None, confidence: float = 0.95,
+              progress: Callable[[int, float], None] | None = None) -> Calibration:
     """Fits material parameters to a force-displacement curve of a slow test.
 
     The scene is the test at rest: what holds the specimen, and the pin or obstacle that loads it.
@@ -181,6 +183,8 @@ def calibrate(scene: Scene | Path, data: Path | tuple[npt.ArrayLike, npt.ArrayLi
         direction: of the displacement, and of the force that causes it.
         parameters: ranges by key: {"cube.young": Range(1e3, 1e5, log=True)}.
         confidence: of the intervals.
+        progress: called after each curve with their number and the residual, a share of the largest
+            force (root mean square).
 
     Raises:
         UsageError: the data, a key or scipy is missing.
@@ -216,7 +220,10 @@ def calibrate(scene: Scene | Path, data: Path | tuple[npt.ArrayLike, npt.ArrayLi
     def residual(shares: Floats) -> Floats:
         force = curve.force(point(shares))
         # Where no rest state is found the model is far off.
-        return np.where(np.isfinite(force), force - measured, 10.0 * size) / size
+        off = np.where(np.isfinite(force), force - measured, 10.0 * size) / size
+        if progress is not None:
+            progress(curve.runs, float(np.sqrt(np.mean(off**2))))
+        return np.asarray(off, float)
 
     found = optimize.least_squares(residual, middle, bounds=(0.0, 1.0), diff_step=STEP,
                                    xtol=1e-10, ftol=1e-12, gtol=1e-12, max_nfev=50)
