@@ -80,6 +80,8 @@ class Run:
     def frames(self, which):
         """Frames by a list such as "0,15,last" (the default of a picture: "last")."""
         indices = []
+        if which == "all":
+            return [Frame(*entry) for entry in self.entries]
         for word in which.split(","):
             count = len(self.entries)
             try:

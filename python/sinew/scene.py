@@ -151,7 +151,8 @@ class Scene:
             nodes: (n, 3) places [m], or in units of `scale` metres.
             tets: (t, 4) node numbers, from 0.
             tet_labels: (t,) a label for each tet; default: all 0.
-            faces, face_labels: (f, 3) and (f,) labelled triangles, for selections.
+            faces: (f, 3) labelled triangles, for selections.
+            face_labels: (f,) their labels.
         """
         if (nodes is None) != (tets is None):
             raise UsageError(f"body '{name}' has nodes or tets, not both", "give both arrays")

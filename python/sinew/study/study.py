@@ -56,7 +56,8 @@ class Study:
         Args:
             folder: where the study lies: study.json, runs/, table.csv, failures.csv, fields.h5.
             design: "grid", "latin", "sobol", or an object of Morris or Sobol.
-            samples, seed: of "latin" and "sobol".
+            samples: points of "latin" and "sobol".
+            seed: of their random numbers.
             on: "local"; the address of a Dask scheduler, "tcp://host:8786"; "slurm"; or an Engine.
             workers: processes, or tasks of the job array; 0: as many as fit.
             fields: also fields.h5, the nodes' positions at the end of every run (needs h5py).
