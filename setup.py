@@ -1,6 +1,7 @@
 """Builds the extension module of the Python package by CMake, for `pip wheel .`.
 
 SINEW_CMAKE_ARGS: further arguments of CMake, e.g. -DCMAKE_CXX_COMPILER=clang++.
+SINEW_CMAKE_BUILD: a build folder of the same sources that has the module already.
 """
 
 import os
@@ -23,17 +24,23 @@ def version():
 
 class Build(build_ext):
     def build_extension(self, ext):
-        build = pathlib.Path(self.build_temp).resolve()
+        have = os.environ.get("SINEW_CMAKE_BUILD")
+        build = pathlib.Path(have or self.build_temp).resolve()
+        if not have:
+            self.make(build)
+        target = pathlib.Path(self.get_ext_fullpath(ext.name))
+        target.parent.mkdir(parents=True, exist_ok=True)
+        module, = (build / "python" / "sinew").glob("_sinew.*.so")
+        self.copy_file(str(module), str(target))
+
+    @staticmethod
+    def make(build):
         subprocess.run(
             ["cmake", "-G", "Ninja", "-S", ROOT, "-B", build, "-DCMAKE_BUILD_TYPE=Release",
              "-DSINEW_APPS=OFF", "-DSINEW_TESTS=OFF", "-DSINEW_PYTHON_PACKAGE=ON",
              f"-DSINEW_PYTHON={sys.executable}",
              *shlex.split(os.environ.get("SINEW_CMAKE_ARGS", ""))], check=True)
         subprocess.run(["cmake", "--build", build, "--target", "sinew_python"], check=True)
-        target = pathlib.Path(self.get_ext_fullpath(ext.name))
-        target.parent.mkdir(parents=True, exist_ok=True)
-        module, = (build / "python" / "sinew").glob("_sinew.*.so")
-        self.copy_file(str(module), str(target))
 
 
 setup(version=version(), ext_modules=[Extension("sinew._sinew", [])],
