@@ -12,6 +12,7 @@
 #include "commands.h"
 #include "framework_options.h"
 #include "interrupt.h"
+#include "own_scenes.h"
 #include "progress.h"
 #include "sinew/base/parallel.h"
 
@@ -131,6 +132,7 @@ Examples:
   sinew run bunny-scene.txt --restitution 0.5 --set duration=3
   sinew run tower_chain-scene.txt --constraints tower_chain-constraints.txt --young 1e6)");
   command->callback([a, &status] {
+    point_to_own_scene("run", a->scene);
     const Scene scene = load_framework_scene(a->scene, a->framework, a->set);
     fs::path out;
     if (!a->no_output) out = a->out.empty() ? fresh_folder(scene.name) : fs::path(a->out);

@@ -14,6 +14,7 @@
 #include "commands.h"
 #include "framework_options.h"
 #include "interrupt.h"
+#include "own_scenes.h"
 #include "sinew/base/error.h"
 #include "sinew/base/parallel.h"
 #include "sinew/base/spawn.h"
@@ -106,19 +107,6 @@ void open_browser(const std::string& url) {
   posix_spawn_file_actions_destroy(&quiet);
 }
 
-// The folder of Sinew's scenes: below the working directory, in the source tree of the build, or
-// installed beside the program.
-std::filesystem::path find_scenes() {
-  std::error_code ignored;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", ignored).parent_path();
-  for (const std::filesystem::path& place :
-       {std::filesystem::path("scenes"), program / "../../scenes",
-        program / "../share/sinew/scenes"}) {
-    if (std::filesystem::is_regular_file(place / "liver.toml", ignored)) return place;
-  }
-  return {};
-}
-
 // The scene behind the gallery until one is chosen.
 std::string first_scene(const std::filesystem::path& scenes) {
   const std::filesystem::path file = scenes / "liver.toml";
@@ -140,6 +128,7 @@ int view(const ViewArguments& a) {
   options.scenes = a.scenes.empty() ? find_scenes() : std::filesystem::path(a.scenes);
   options.gallery = a.scene.empty();
   const std::string scene = a.scene.empty() ? first_scene(options.scenes) : a.scene;
+  point_to_own_scene("view", scene);
   const Scene loaded = load_scene_or_mesh(scene, a.set, a.framework);
   for (const std::string& warning : loaded.warnings) fmt::print(stderr, "warning: {}\n", warning);
   server::Server server(options, loaded);

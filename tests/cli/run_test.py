@@ -46,6 +46,13 @@ class RunTest(CliTest):
         self.run_sinew("run", BEAM, "--set", "duration=0.1")  # does not overwrite
         self.assertTrue((self.dir / "out/beam-2/beam.pvd").exists())
 
+    def test_scenes_that_come_with_it_are_pointed_to(self):
+        for command in ("run", "view"):
+            result = self.run_sinew(command, "nowhere/liver.toml", code=6)
+            self.assertIn("nowhere/liver.toml: there is no such scene file", result.stderr)
+            self.assertRegex(result.stderr, f"sinew {command} .*scenes/liver.toml")
+        self.assertIn("check the path", self.run_sinew("run", "no.toml", code=6).stderr)
+
     def test_quiet_prints_nothing(self):
         r = self.run_sinew("run", BEAM, "-q", "--no-output", "--set", "duration=0.1")
         self.assertEqual((r.stdout, r.stderr), ("", ""))

@@ -3,6 +3,7 @@
 import importlib.util
 import subprocess
 import sys
+import tempfile
 import unittest
 
 from python_support import ROOT, PythonTest
@@ -18,9 +19,15 @@ name: str = result.status
 
 @unittest.skipIf(importlib.util.find_spec("mypy") is None, "mypy is not installed")
 class TypesTest(PythonTest):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory(prefix="sinew-mypy-")  # the types of numpy take long
+        cls.addClassCleanup(folder.cleanup)
+        cls.cache = folder.name
+
     def mypy(self, *args):
         return subprocess.run([sys.executable, "-m", "mypy", "--strict", "--no-error-summary",
-                               "--cache-dir", str(self.dir / "cache"), *args], cwd=ROOT / "python",
+                               "--cache-dir", self.cache, *args], cwd=ROOT / "python",
                               text=True, capture_output=True, check=False)
 
     def test_the_package(self):
