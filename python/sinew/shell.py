@@ -6,15 +6,26 @@ import os
 import pathlib
 import sys
 import tomllib
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from .errors import _KINDS, Error, InputError, UsageError
 from .study.designs import Range, Values
 
 
-def read_toml(file: str, keys: Collection[str], page: str) -> dict[str, Any]:
-    """The table of a file that may have these keys."""
+# What a key's value may be.
+KINDS = {str: "a text", int: "a whole number", float: "a number", bool: "true or false",
+         list: "a list", dict: "a table"}
+
+
+def is_kind(value: Any, kind: type) -> bool:
+    if kind in (int, float) and isinstance(value, bool):
+        return False
+    return isinstance(value, (int, float) if kind is float else kind)
+
+
+def read_toml(file: str, keys: Mapping[str, type], page: str) -> dict[str, Any]:
+    """The table of a file that may have these keys, with values of these kinds."""
     try:
         table = tomllib.loads(pathlib.Path(file).read_text(encoding="utf-8"))
     except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
@@ -22,6 +33,9 @@ def read_toml(file: str, keys: Collection[str], page: str) -> dict[str, Any]:
     for key in table:
         if key not in keys:
             raise InputError(f"unknown key '{key}'", f"one of {', '.join(sorted(keys))}", file)
+        if not is_kind(table[key], keys[key]):
+            raise InputError(f"'{key}' is {table[key]!r}", f"expected {KINDS[keys[key]]}; see {page}",
+                             file)
     return table
 
 
@@ -33,11 +47,10 @@ def values_of(key: str, value: Any, file: str) -> Values:
         unknown = set(value) - {"low", "high", "log", "grid", "values"}
         if not unknown and "values" in value:
             return values_of(key, value["values"], file)
-        if not unknown and {"low", "high"} <= set(value):
-            try:
-                return Range(**value)
-            except TypeError as error:
-                raise InputError(f"'{key}': {error}", "give numbers", file) from None
+        kinds = {"low": float, "high": float, "log": bool, "grid": int}
+        if not unknown and {"low", "high"} <= set(value) and all(
+                is_kind(v, kinds[k]) for k, v in value.items()):
+            return Range(**value)
     raise InputError(f"'{key}' is no range and no list",
                      "{ low = 1e3, high = 1e4, log = true }, or [0.3, 0.4]", file)
 

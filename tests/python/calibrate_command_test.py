@@ -72,6 +72,9 @@ class CalibrateCommandTest(PythonTest):
                             (FIT.replace("= { low = 1e3, high = 50e3, log = true }", "= [1, 2]"),
                              "needs a range"),
                             (FIT.split("[parameters]")[0], "[parameters] is missing"),
+                            (FIT.replace("log = true", "log = 3"), "no range"),
+                            ("set = 4\n" + FIT, "a table"),
+                            (FIT.replace('"pin.plate"', "7"), "a text"),
                             ("scene = ", "Invalid value")):
             self.write("wrong.toml", wrong)
             result = self.sinew("wrong.toml", code=3)

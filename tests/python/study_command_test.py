@@ -49,7 +49,7 @@ class StudyCommandTest(PythonTest):
 
     def test_mistakes(self):
         for text, what in (("", "'scene' is missing"), ("scene = 1 2", "study"),
-                           ('scene = "beam.toml"\nvary = 1\n', "table [vary] is missing"),
+                           ('scene = "beam.toml"\nvary = 1\n', "expected a table"),
                            ('scene = "beam.toml"\n[vary]\n"beam.young" = 3\n', "no range"),
                            ('scenes = "a"\n', "unknown key 'scenes'"),
                            ('scene = "beam.toml"\n[vary]\n"beam.yuong" = [3.0]\n', "yuong")):
@@ -57,6 +57,14 @@ class StudyCommandTest(PythonTest):
             result = self.sinew("bad.toml", code=3)
             self.assertIn(what, result.stderr)
             self.assertIn("remedy: ", result.stderr)
+        for line, what in (('samples = "a"', "expected a whole number"), ("design = 5", "a text"),
+                           ("seed = true", "a whole number"), ('fields = "yes"', "true or false")):
+            self.write("bad.toml", f"{line}\n{STUDY}")
+            self.assertIn(what, self.sinew("bad.toml", code=3).stderr)
+        for line, what in (("samples = 10000000000", "1000000"), ("samples = 0", "1000000"),
+                           ("seed = -1", "seed is -1")):
+            self.write("bad.toml", f'design = "latin"\n{line}\n{STUDY}')
+            self.assertIn(what, self.sinew("bad.toml", code=2).stderr)
         self.assertIn("cloud", self.sinew("study.toml", "--on", "cloud", code=2).stderr)
 
     def test_without_the_package(self):

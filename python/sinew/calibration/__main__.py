@@ -11,12 +11,13 @@ import time
 
 from .. import report
 from ..errors import InputError
-from ..shell import guarded, new_folder, read_toml, show, table_of, values_of
+from ..shell import guarded, is_kind, new_folder, read_toml, show, table_of, values_of
 from ..study.designs import Range
 from .fit import Calibration, calibrate
 
 PAGE = "docs/calibrate.md"
-KEYS = {"scene", "data", "moved", "direction", "confidence", "parameters", "set"}
+KEYS = {"scene": str, "data": str, "moved": str, "direction": list, "confidence": float,
+        "parameters": dict, "set": dict}
 
 
 def read(file: str) -> tuple[dict[str, object], dict[str, Range]]:
@@ -27,10 +28,10 @@ def read(file: str) -> tuple[dict[str, object], dict[str, Range]]:
             raise InputError(f"the key '{key}' is missing", f"see {PAGE}", file)
     direction = spec["direction"]
     if not (isinstance(direction, list) and len(direction) == 3 and
-            all(isinstance(x, int | float) for x in direction)):
+            all(is_kind(x, float) for x in direction)):
         raise InputError("'direction' is no list of three numbers", "such as [0, -1, 0]", file)
     confidence = spec.setdefault("confidence", 0.95)
-    if not (isinstance(confidence, float) and 0.0 < confidence < 1.0):
+    if not 0.0 < confidence < 1.0:
         raise InputError("'confidence' is no number between 0 and 1", "such as 0.95", file)
     ranges = {}
     for key, value in table_of(spec, "parameters", file, PAGE).items():

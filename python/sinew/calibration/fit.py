@@ -95,7 +95,11 @@ def read_curve(file: Path) -> tuple[Floats, Floats]:
     Lines that do not start with a number are headings or comments.
     """
     rows = []
-    for number, line in enumerate(pathlib.Path(file).read_text(encoding="utf-8").splitlines(), 1):
+    try:
+        text = pathlib.Path(file).read_text(encoding="utf-8")
+    except UnicodeDecodeError:
+        raise UsageError(f"{file} is no text", "a CSV file: displacement [m], force [N]") from None
+    for number, line in enumerate(text.splitlines(), 1):
         cells = line.replace(";", ",").split(",")
         try:
             first = float(cells[0])
@@ -121,6 +125,11 @@ class _Curve:
         if kind not in ("pin", "obstacle") or not name:
             raise UsageError(f"'{moved}' cannot be moved", "\"pin.NAME\" or \"obstacle.NAME\"")
         self.scene, self.kind, self.name = scene, kind, name
+        simulation = Simulation(scene, set=settings)
+        names = simulation.pin_names if kind == "pin" else simulation.obstacle_names
+        if name not in names:
+            raise UsageError(f"the scene has no {kind} '{name}'",
+                             f"one of {', '.join(names)}" if names else f"add a [{kind}.{name}]")
         length = math.sqrt(sum(d * d for d in xyz(direction)))
         if not (math.isfinite(length) and length > 0.0):
             raise UsageError(f"{list(direction)} is no direction", "such as [0, -1, 0]")

@@ -23,7 +23,8 @@ from .study import Study
 from .table import Table
 
 PAGE = "docs/study.md"
-KEYS = {"scene", "design", "samples", "seed", "trajectories", "vary", "set", "result", "fields"}
+KEYS = {"scene": str, "design": str, "samples": int, "seed": int, "trajectories": int, "vary": dict,
+        "set": dict, "result": str, "fields": bool}
 
 
 def read_study(file: str) -> tuple[Study, dict[str, Any]]:
@@ -85,6 +86,9 @@ def study(options: argparse.Namespace) -> int:
                      seed=spec.get("seed", 0), on=options.on, workers=options.workers,
                      fields=bool(spec.get("fields", False)), progress=None if options.quiet else Slowly())
     answer = report(work, table, spec, out)
+    if "result" in spec and spec["result"] not in table.names:
+        print(f"warning: the table has no column '{spec['result']}', but {', '.join(table.names)}",
+              file=sys.stderr)
     page = pathlib.Path(out) / "report.html"
     page.write_text(pages.of_study(work, table, pathlib.Path(options.file).stem,
                                    spec.get("result"), answer.get("effects", {})), encoding="utf-8")

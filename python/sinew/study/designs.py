@@ -60,6 +60,17 @@ def points_at(vary: Mapping[str, Values], shares: npt.NDArray[np.float64]) -> li
             for row in shares]
 
 
+# Above it a study's folder has more files than file systems like.
+MOST_POINTS = 1_000_000
+
+
+def require_whole(name: str, value: Any, least: int, most: int = MOST_POINTS) -> None:
+    """Raises UsageError unless the value is a whole number from `least` to `most`."""
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not (
+            least <= value <= most):
+        raise UsageError(f"{name} is {value!r}", f"give a whole number from {least} to {most}")
+
+
 def grid(vary: Mapping[str, Values]) -> list[Point]:
     """Every combination of the values."""
     lists = [[v.at(i / (v.grid - 1)) for i in range(v.grid)] if isinstance(v, Range) else list(v)
@@ -95,9 +106,11 @@ def design_of(name: str, vary: Mapping[str, Values], samples: int, seed: int) ->
         if not isinstance(values, Range) and (isinstance(values, str) or len(values) == 0):
             raise UsageError(f"'{key}' has no values", "give a Range or a list")
     if name == "grid":
+        sizes = [v.grid if isinstance(v, Range) else len(v) for v in vary.values()]
+        require_whole("the number of points of the grid", math.prod(sizes), 1)
         return grid(vary)
-    if samples < 1:
-        raise UsageError(f"a design of {samples} points", "samples is 1 or more")
+    require_whole("samples", samples, 1)
+    require_whole("seed", seed, 0, 2**63 - 1)
     if name == "latin":
         return latin(vary, samples, seed)
     if name == "sobol":

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from ..errors import UsageError
-from .designs import Point, Values, points_at, sobol_shares
+from .designs import Point, Values, points_at, require_whole, sobol_shares
 from .table import Table
 
 Floats = npt.NDArray[np.float64]
@@ -43,8 +43,8 @@ class Morris:
     """
 
     def __init__(self, trajectories: int = 10, seed: int = 0) -> None:
-        if trajectories < 2:
-            raise UsageError(f"{trajectories} trajectories have no spread", "take 2 or more")
+        require_whole("trajectories", trajectories, 2)  # one has no spread
+        require_whole("seed", seed, 0, 2**63 - 1)
         self.trajectories, self.seed = trajectories, seed
 
     def shares(self, keys: int) -> Floats:
@@ -87,7 +87,9 @@ class Sobol:
     total by Jansen's (1999). Costs samples (keys + 2) runs; samples is a power of two."""
 
     def __init__(self, samples: int = 64, seed: int = 0) -> None:
-        if samples < 2 or samples & (samples - 1):
+        require_whole("samples", samples, 2)
+        require_whole("seed", seed, 0, 2**63 - 1)
+        if samples & (samples - 1):
             raise UsageError(f"{samples} samples are no power of two", "take 64, 128 ...")
         self.samples, self.seed = samples, seed
 
