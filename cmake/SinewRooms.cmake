@@ -23,6 +23,10 @@ if(SINEW_SANITIZE)
   target_compile_options(sinew_flags INTERFACE
     -fsanitize=${SINEW_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
   target_link_options(sinew_flags INTERFACE -fsanitize=${SINEW_SANITIZE})
+  if(SINEW_SANITIZE MATCHES "address.*undefined")
+    # The address sanitizer finds these at the access; checked twice, the build takes a sixth longer.
+    target_compile_options(sinew_flags INTERFACE -fno-sanitize=null,object-size)
+  endif()
 endif()
 
 # A plain build compiles the sources of a room in batches (unity builds) and precompiles the
