@@ -179,8 +179,9 @@ def debian():
     with Debian() as there:
         for package in found:
             there.copy(package, "packages")
-        # matplotlib and scipy are what the Python package recommends and suggests.
-        there.install("/packages/*.deb", "python3-matplotlib", "python3-scipy")
+        # What the Python package recommends and suggests, for its tests.
+        there.install("/packages/*.deb", "python3-matplotlib", "python3-scipy",
+                      "python3-distributed", "python3-h5py")
         readme_commands(there, "sinew", "/usr/share/sinew/scenes")
         there.sh("sinew validate uniaxial --dir /usr/share/sinew/validation --quick")
         for path in NEEDED:
