@@ -17,8 +17,8 @@ class View:
     """A live view that has taken a simulation over: it starts from its state, and its page steps it,
     pulls it and changes it. close() gives the state back.
 
-    Until then step(), advance() and restore() of the simulation raise UsageError; its arrays keep
-    their values. In a `with` statement the end of the block closes the view. In a notebook a view is
+    Until then whatever would change the simulation raises UsageError: steps, moves of obstacles and
+    pins, materials; its arrays keep their values. In a `with` statement the end of the block closes the view. In a notebook a view is
     shown as a frame.
     """
 
@@ -38,7 +38,8 @@ class View:
         return self._view.open
 
     def close(self) -> None:
-        """Ends the view; the simulation goes on from the state that it shows.
+        """Ends the view; the simulation goes on from the state that it shows, with the same bits if
+        nothing was done in the view. Ctrl-C ends the waiting for a long step and leaves it open.
 
         Raises:
             UsageError: the page shows another scene or material by now. The simulation keeps the

@@ -127,9 +127,10 @@ def _scatter(study: Study, table: Table, results: Sequence[str]) -> Iterable[Any
         y = np.asarray(table.column(result), float)
         for i, key in enumerate(keys):
             axes = figure.add_subplot(-(-len(keys) // 3), min(len(keys), 3), i + 1)
-            x = table.column(key)
-            axes.plot(x if x.dtype.kind in "if" else [str(v) for v in x], y, "o", color=INK,
-                      markersize=3.5, alpha=0.7)
+            x = [row[key] for row in table]
+            if not all(isinstance(v, int | float) for v in x):  # names, lists: one place for each
+                x = [str(v) for v in x]
+            axes.plot(x, y, "o", color=INK, markersize=3.5, alpha=0.7)
             of = study.vary[key]
             if isinstance(of, Range) and of.log:
                 axes.set_xscale("log")

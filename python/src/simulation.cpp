@@ -111,7 +111,7 @@ void add_time(py::class_<S>& c) {
     s.stepping([&](Simulation& sim) { done = sim.advance(seconds); });
     return done;
   });
-  c.def("interrupt", [](S& s) { s.of().interrupt(); });
+  c.def("interrupt", [](S& s) { s.lent().interrupt(); });
   c.def_property_readonly("time", [](const S& s) { return s.of().time(); });
   c.def_property_readonly("steps", [](const S& s) { return s.of().steps(); });
   c.def_property_readonly("last_step", [](const S& s) { return s.of().last_step(); });
@@ -142,13 +142,12 @@ void add_values(py::class_<S>& c) {
   });
   c.def("take_events", [](S& s) {
     py::list out;
-    for (const Event& e : s.of().take_events())
+    for (const Event& e : s.lent().take_events())
       out.append(py::make_tuple(word_of_event(e.kind), e.time, e.count, e.text));
     return out;
   });
   c.def("save", [](const S& s) { return py::bytes(s.of().save().bytes()); });
   c.def("restore", [](S& s, const py::bytes& bytes) {
-    s.require_own();
     s.of().restore(SavedState(std::string(bytes)));
     s.changed();
   });

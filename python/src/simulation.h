@@ -70,7 +70,12 @@ class PySimulation {
                   "close() the view; it gives its state back");
   }
 
-  Simulation& of() { return simulation_; }
+  // To change it: refused while the view has it.
+  Simulation& of() {
+    require_own();
+    return simulation_;
+  }
+  Simulation& lent() { return simulation_; }
   const Simulation& of() const { return simulation_; }
 
   // Takes steps without the GIL; Ctrl-C interrupts them.

@@ -14,11 +14,13 @@ import os
 import pathlib
 import re
 import shutil
-import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "tests" / "support"))
+from commands import check, run  # noqa: E402
+
 BUILD = pathlib.Path(os.environ["SINEW_BUILD"])
 CMAKE = os.environ.get("CMAKE", "cmake")
 CXX = os.environ.get("CXX", "g++")
@@ -29,20 +31,6 @@ NUMBER = r"(-?\d+(?:\.\d+)?)"
 INSIDE = ("eigen", "tbb", "fmt", "hwy", "pugixml", "toml", "xxhash", "nlohmann")
 # What our own build adds and a user's may not get.
 OUR_FLAGS = ("-Wconversion", "-Wshadow", "-ffp-contract", "-fvisibility", "EIGEN_")
-
-
-def run(*command, cwd=None, env=None):
-    """What the command prints; SystemExit with it where it fails."""
-    done = subprocess.run([str(c) for c in command], cwd=cwd, text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, env=dict(os.environ, **(env or {})))
-    if done.returncode:
-        raise SystemExit(f"{' '.join(map(str, command))}\n{done.stdout}exit code {done.returncode}")
-    return done.stdout
-
-
-def check(truth, what):
-    if not truth:
-        raise SystemExit(f"not so: {what}")
 
 
 # ---- what the examples print ----

@@ -24,6 +24,9 @@ import tempfile
 import textwrap
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
+sys.path.insert(0, str(ROOT / "tests" / "support"))
+from commands import check, run  # noqa: E402
+
 PACKAGES = ROOT / "build" / "packages"
 VERSION = os.environ.get("SINEW_VERSION", "*")
 SKIPPED = 77
@@ -38,19 +41,6 @@ class Skipped(Exception):
 
 class Unable(Skipped):
     """This machine cannot make a root of its own, whatever is required."""
-
-
-def run(*command, **options):
-    done = subprocess.run([str(c) for c in command], text=True, stdout=subprocess.PIPE,
-                          stderr=subprocess.STDOUT, check=False, **options)
-    if done.returncode:
-        raise SystemExit(f"{' '.join(map(str, command))}\n{done.stdout}exit code {done.returncode}")
-    return done.stdout
-
-
-def check(truth, what):
-    if not truth:
-        raise SystemExit(f"not so: {what}")
 
 
 def packages(pattern):
@@ -106,7 +96,8 @@ class Debian:
         environment = {"PATH": "/usr/sbin:/usr/bin:/sbin:/bin", "HOME": "/root", "LC_ALL": "C.UTF-8",
                        "DEBIAN_FRONTEND": "noninteractive", "PYTHONDONTWRITEBYTECODE": "1",
                        "MPLBACKEND": "Agg"}
-        return run("chroot", self.root, "/bin/sh", "-euc", f"cd {cwd}\n{script}", env=environment)
+        return run("env", "-i", *(f"{name}={value}" for name, value in environment.items()),
+                   "chroot", self.root, "/bin/sh", "-euc", f"cd {cwd}\n{script}")
 
     def install(self, *names):
         for conf in pathlib.Path("/etc/apt/apt.conf.d").glob("*"):  # a proxy, for one
@@ -226,7 +217,7 @@ def wheel():
         if (ROOT / ".git").exists():
             for name in run("git", "-C", ROOT, "ls-files").splitlines():
                 check((unpacked / name).exists() or not (ROOT / name).exists(), f"it has {name}")
-        environment = dict(os.environ)
+        environment = {}
         if os.environ.get("SINEW_PACKAGES") == "full":  # plain code: the speed is not looked at
             environment["SINEW_CMAKE_ARGS"] = "-DCMAKE_CXX_FLAGS_RELEASE=-O0"
         else:
@@ -239,7 +230,7 @@ def wheel():
         site = pathlib.Path(folder) / "site"
         run(python, "-m", "pip", "install", "--no-index", "--no-deps", "--target", site, built)
         run(python, ROOT / "tests/python/scene_test.py", cwd=folder,
-            env=dict(os.environ, PYTHONPATH=str(site)))
+            env={"PYTHONPATH": str(site)})
 
 
 def main(argv):

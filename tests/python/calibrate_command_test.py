@@ -7,23 +7,10 @@ import subprocess
 import unittest
 
 import numpy as np
-from python_support import PythonTest
+from python_support import PythonTest, cube
 from sinew.calibration.fit import _Curve
 
 BIN = os.environ.get("SINEW_BIN", "sinew")
-CUBE = """gravity = [0, 0, 0]
-[body.cube]
-shape = "box"
-size = [0.02, 0.02, 0.02]
-cells = [2, 2, 2]
-young = 8e3
-poisson = 0.45
-[pin.floor]
-select = { side = "-y" }
-[pin.plate]
-select = { side = "+y" }
-path = [{ time = 0 }]
-"""
 FIT = """scene = "cube.toml"
 data = "curve.csv"
 moved = "pin.plate"
@@ -37,7 +24,7 @@ direction = [0, -1, 0]
 class CalibrateCommandTest(PythonTest):
     def setUp(self):
         super().setUp()
-        self.write("cube.toml", CUBE)
+        self.write("cube.toml", cube(cells=2).toml())
         self.write("fit.toml", FIT)
         depth = np.linspace(0.2e-3, 2e-3, 6)
         force = _Curve(str(self.dir / "cube.toml"), "pin.plate", (0, -1, 0), [], depth).force(

@@ -6,21 +6,12 @@ import unittest
 
 import numpy as np
 import sinew
-from python_support import PythonTest
+from python_support import PythonTest, cube
 from sinew.calibration import calibrate, read_curve
 from sinew.calibration.fit import _Curve
 from sinew.study import Range
 
 YOUNG = Range(1e3, 50e3, log=True)
-
-
-def cube(side=0.02, cells=3, poisson=0.45):
-    """A cube between two glued plates."""
-    scene = sinew.Scene(gravity=[0, 0, 0])
-    scene.body("cube", shape="box", size=[side] * 3, cells=[cells] * 3, young=8e3, poisson=poisson)
-    scene.pin("floor", select={"side": "-y"})
-    scene.pin("plate", select={"side": "+y"}, path=[{"time": 0}])
-    return scene
 
 
 PRESS = dict(moved="pin.plate", direction=[0, -1, 0])

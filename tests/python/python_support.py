@@ -30,6 +30,15 @@ def beam(**keys):
     return scene
 
 
+def cube(side=0.02, cells=3, poisson=0.45):
+    """A cube between two glued plates."""
+    scene = sinew.Scene(gravity=[0, 0, 0])
+    scene.body("cube", shape="box", size=[side] * 3, cells=[cells] * 3, young=8e3, poisson=poisson)
+    scene.pin("floor", select={"side": "-y"})
+    scene.pin("plate", select={"side": "+y"}, path=[{"time": 0}])
+    return scene
+
+
 class PythonTest(unittest.TestCase):
     """A test with `self.dir`, an empty folder."""
 

@@ -59,6 +59,15 @@ class FieldsTest(PythonTest):
 
 
 class ReportTest(PythonTest):
+    def test_lists_and_names_are_places_of_their_own(self):
+        study = Study(beam(duration=0.01), {"beam.cells": [[1, 1, 4], [2, 2, 8]],
+                                            "beam.law": ["neo-hookean", "lloyd"]})
+        table = study.run(self.dir / "study")
+        page = sinew.report.of_study(study, table, "Meshes", "tip.uy")
+        if importlib.util.find_spec("matplotlib") is not None:
+            for label in ("[2, 2, 8]", "lloyd"):
+                self.assertIn(f"<!-- {label} -->", page)  # matplotlib names what it draws
+
     def test_a_page_of_a_study(self):
         study = Study(beam(duration=0.02), {"beam.young": Range(50e3, 200e3, grid=3),
                                             "beam.poisson": [0.3, 0.7]})
@@ -262,7 +271,7 @@ class StudyTest(PythonTest):
 
     def test_a_task_of_an_array(self):
         study = self.study()
-        study._prepare(self.dir / "s", design_of("grid", VARY, 0, 0))
+        study._prepare(self.dir / "s", design_of("grid", VARY, 0, 0), study.task)
         for numbers in ("0,2,4", "1,3,5", "0,1"):
             subprocess.run([sys.executable, "-m", "sinew.study", "--runs",
                             str(self.dir / "s"), numbers],

@@ -71,10 +71,10 @@ class Study:
         place = pathlib.Path(folder).resolve()
         if fields:
             need_h5py()
-        self.task = dataclasses.replace(self.task, fields=fields)
+        task = dataclasses.replace(self.task, fields=fields)
         # A mistake in the scene or a key is found here, not by every run.
         _sinew.duration_of(source_of(self.task.scene, {**self.task.settings, **points[0]}))
-        self._prepare(place, points)
+        self._prepare(place, points, task)
         rows = {number: row for number in range(len(points))
                 if (row := self._row(place, number)) is not None and
                 (not fields or row["status"] != "finished" or field_file(place, number).exists())}
@@ -85,7 +85,7 @@ class Study:
         if progress is not None:
             progress(len(rows), len(points), -1.0)
         if left:
-            for row in engine_of(on, workers).rows(self.task, left, place):
+            for row in engine_of(on, workers).rows(task, left, place):
                 write_row(place, row)
                 rows[row["run"]] = row
                 if progress is not None:
@@ -116,7 +116,7 @@ class Study:
                 known.update(pathlib.Path(file).read_bytes())
         return known.hexdigest()
 
-    def _prepare(self, place: pathlib.Path, points: list[Point]) -> None:
+    def _prepare(self, place: pathlib.Path, points: list[Point], task: Task) -> None:
         plan = {"identity": self._identity(), "points": json.loads(json.dumps(points))}
         file = place / "study.json"
         if file.exists():
@@ -128,12 +128,12 @@ class Study:
         elif place.exists() and any(place.iterdir()):
             raise UsageError(f"{place} is not empty and holds no study", "name another folder")
         try:
-            task = pickle.dumps(self.task)
+            pickled = pickle.dumps(task)
         except (pickle.PicklingError, AttributeError, TypeError) as error:
             raise UsageError(f"other processes cannot get the measure: {error}",
                              "give a function of a module, no lambda") from None
         (place / "runs").mkdir(parents=True, exist_ok=True)
-        (place / "task.pickle").write_bytes(task)
+        (place / "task.pickle").write_bytes(pickled)
         fresh = file.with_suffix(".tmp")
         fresh.write_text(json.dumps(plan, indent=1), encoding="utf-8")
         fresh.replace(file)
