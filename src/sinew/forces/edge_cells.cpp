@@ -50,6 +50,10 @@ void for_each_edge_cell(const TetMesh& mesh, std::span<const std::array<Vec3, 4>
       cell.tets.clear();
       cell.nodes.clear();
       cell.sums.clear();
+      for (const Index end : table.edges[uz(e)]) {
+        cell.nodes.push_back(end);
+        cell.sums.push_back(Vec3::Zero());
+      }
       for (const Index t : around) {
         if (region_of(t) == r) add_tet(mesh, gradients, t, cell);
       }

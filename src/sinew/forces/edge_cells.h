@@ -15,7 +15,7 @@ struct EdgeCell {
   int region = 0;
   double volume = 0.0;       // V_e = sum_t V_t / 6 [m3]
   std::vector<Index> tets;   // ids in the mesh
-  std::vector<Index> nodes;  // of its tets, ids in the mesh
+  std::vector<Index> nodes;  // of its tets, ids in the mesh; the ends of the edge first
   std::vector<Vec3> sums;    // V_e g_a = sum_t (V_t / 6) G_ta [m2] (nodes)
 };
 

@@ -206,13 +206,10 @@ void PackedForces::find_low_tets(const Patch& patch) {
 
 void PackedForces::gather(const Patch& patch, float* force) const {
   const FlushDenormals flush;
-  const PackedRows rows{row_start_.empty() ? nullptr : row_start_.data(), row_offset_.data(),
-                        row_stiffness_.data()};
   const PackedSlots slots{slot_force_.data() + 4 * patch.slots.begin, slot_force_.data(),
                           other_slot_.data() + patch.others.begin,
                           other_node_.data() + patch.others.begin, patch.others.size()};
-  packed_gather(frame_of(patch.body), rows, slots, displacement_.data(),
-                {patch.nodes.begin / 2, patch.nodes.end / 2}, force);
+  packed_gather(frame_of(patch.body), slots, patch.nodes.size(), force);
 }
 
 void PackedForces::gather(std::span<Vec3> force) const {
@@ -228,9 +225,8 @@ std::size_t PackedForces::bytes() const {
   return of(patches_, frame_nodes_, node_of_, body_of_, slot_node_, slot_cell_, other_slot_,
             other_node_, cell_start_, cell_slot_, cell_stiffness_, ring_corner_, ring_data_,
             ring_length_, tet_id_, edge_cell_corner_, edge_cell_data_, edge_cell_length_,
-            one_ring_corner_, one_ring_data_, one_ring_length_, row_start_, row_offset_,
-            row_stiffness_, frames_, displacement_, velocity_, slot_displacement_, slot_velocity_,
-            slot_force_, tet_change_, cell_pressure_);
+            one_ring_corner_, one_ring_data_, one_ring_length_, frames_, displacement_, velocity_,
+            slot_displacement_, slot_velocity_, slot_force_, tet_change_, cell_pressure_);
 }
 
 }  // namespace sinew

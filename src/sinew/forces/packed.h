@@ -1,5 +1,5 @@
-// The material's forces in single precision, laid out for SIMD: network, volume terms and springs
-// of a model. docs/methods/single-precision.md.
+// The material's forces in single precision, laid out for SIMD: edge cells, volume terms and
+// springs of a model. docs/methods/single-precision.md.
 //
 // Every term is a function of displacements u without the rigid motion of the body. Numbers that
 // cancel at rest are never summed, so the accuracy depends neither on the stiffness of the material
@@ -127,16 +127,13 @@ class PackedForces {
   std::vector<std::uint16_t> ring_corner_;  // packed_kernels.h
   std::vector<float> ring_data_;
   std::vector<std::uint16_t> ring_length_;  // (groups)
-  std::vector<Index> tet_id_;               // (8 per group and tet) -1: none
+  std::vector<Index> tet_id_;               // (16 per group and tet) -1: none
   std::vector<std::uint16_t> edge_cell_corner_;
   std::vector<float> edge_cell_data_;
   std::vector<std::uint16_t> edge_cell_length_;  // nodes (groups)
   std::vector<std::uint16_t> one_ring_corner_;
   std::vector<float> one_ring_data_;
   std::vector<std::uint16_t> one_ring_length_;  // (groups)
-  std::vector<Index> row_start_;                // PackedRows; empty: no network
-  std::vector<std::uint32_t> row_offset_;
-  std::vector<float> row_stiffness_;  // [N/m]
 
   // Scratch: four floats per node or slot.
   std::vector<Frame> frames_;             // (bodies)

@@ -1,4 +1,4 @@
-// Puts rings, edge cells and one-rings into groups of eight, for packer.cpp.
+// Puts rings, edge cells and one-rings into groups of sixteen, for packer.cpp.
 #pragma once
 
 #include <algorithm>
@@ -40,10 +40,12 @@ void spread(std::vector<Item>& items) {
   items = std::move(out);
 }
 
-// Calls emit(length, items) with eight items of one length at a time. The remaining items of a
-// length are split. The last call, with single ones, may get fewer than eight.
+// Calls emit(length, items) with sixteen items of one length at a time. The remaining items of a
+// length make a group of their own if they fill half of its lanes; otherwise they are split. The
+// last call, with single ones, may get fewer.
 template <class Item, class Emit>
 void group_by_length(std::vector<Item> items, const Emit& emit) {
+  constexpr auto lanes = uz(packed_lanes);
   std::size_t longest = 0;
   for (const Item& item : items) longest = std::max(longest, item.length());
   std::vector<Item> of_length;
@@ -55,9 +57,10 @@ void group_by_length(std::vector<Item> items, const Emit& emit) {
     std::erase_if(items, [](const Item& item) { return item.length() == 0; });
     if (length == 1) std::move(single.begin(), single.end(), std::back_inserter(of_length));
     spread(of_length);
+    const std::size_t least = length == 1 ? 1 : lanes / 2;
     std::size_t first = 0;
-    for (; first + 8 <= of_length.size() || (length == 1 && first < of_length.size()); first += 8) {
-      const std::size_t count = std::min<std::size_t>(8, of_length.size() - first);
+    for (; first + least <= of_length.size(); first += lanes) {
+      const std::size_t count = std::min(lanes, of_length.size() - first);
       emit(length, std::span<const Item>(of_length.data() + first, count));
     }
     of_length.erase(of_length.begin(), of_length.begin() + static_cast<std::ptrdiff_t>(
@@ -66,27 +69,32 @@ void group_by_length(std::vector<Item> items, const Emit& emit) {
   }
 }
 
-// The same for items that cannot be split: groups of equal size, and each size may leave one with
-// fewer than eight. size_of(item) is the size. A group has at most `most` items times their size.
+// The same for items that cannot be split: sixteen of falling size at a time; `size` is that of the
+// first, the largest. A group has at most `most` items times their size.
 template <class Size, class Emit>
 void group_by_size(std::vector<Index> items, Index most, const Size& size_of, const Emit& emit) {
   std::stable_sort(items.begin(), items.end(),
                    [&](Index a, Index b) { return size_of(a) > size_of(b); });
+  std::vector<Index> order;
   for (std::size_t begin = 0; begin < items.size();) {
-    const Index size = size_of(items[begin]);
     std::vector<Index> equal;
+    const Index size = size_of(items[begin]);
     for (; begin < items.size() && size_of(items[begin]) == size; ++begin)
       equal.push_back(items[begin]);
     spread(equal);
-    const std::size_t lanes = uz(std::clamp(most / size, 1, 8));
-    for (std::size_t first = 0; first < equal.size(); first += lanes) {
-      const std::size_t count = std::min(lanes, equal.size() - first);
-      emit(size, std::span<const Index>(equal.data() + first, count));
-    }
+    order.insert(order.end(), equal.begin(), equal.end());
+  }
+  for (std::size_t first = 0; first < order.size();) {
+    const Index size = size_of(order[first]);
+    const std::size_t count =
+        std::min(uz(std::clamp(most / size, 1, packed_lanes)), order.size() - first);
+    emit(size, std::span<const Index>(order.data() + first, count));
+    first += count;
   }
 }
 
-// Appends eight values for each of `fields` fields, initially zero, and sets single values in them.
+// Appends sixteen values for each of `fields` fields, initially zero, and sets single values in
+// them.
 class Fields {
  public:
   Fields(std::vector<float>& data, Index fields) : data_(data), first_(data.size()) {

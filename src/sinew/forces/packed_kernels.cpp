@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sinew/forces/eight-inl.h"
+#include "sinew/forces/sixteen-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sinew {
@@ -25,14 +25,14 @@ struct Cursor {
     corner += packed_lanes;
     return c;
   }
-  Eight next() {
-    const Eight e = load(data);
+  Sixteen next() {
+    const Sixteen e = load(data);
     data += packed_lanes;
     return e;
   }
-  Eight3 next3() {
-    const Eight x = next();
-    const Eight y = next();
+  Sixteen3 next3() {
+    const Sixteen x = next();
+    const Sixteen y = next();
     return {x, y, next()};
   }
 };
@@ -47,27 +47,27 @@ void volumes(const PackedGroups& rings, const float* u, float* change, float* fo
     const std::uint16_t* a = at.next_corner();
     const std::uint16_t* b = at.next_corner();
     const std::uint16_t* p = at.next_corner();
-    const Eight3 ua = load_rows(u, a).v;
-    const Eight3 d1 = load_rows(u, b).v - ua;
-    const Eight3 E1 = at.next3();
-    Eight3 dp = load_rows(u, p).v - ua;
-    Eight3 Ep = at.next3();
+    const Sixteen3 ua = load_rows(u, a).v;
+    const Sixteen3 d1 = load_rows(u, b).v - ua;
+    const Sixteen3 E1 = at.next3();
+    Sixteen3 dp = load_rows(u, p).v - ua;
+    Sixteen3 Ep = at.next3();
     at.data += (ring_head_fields - 6) * packed_lanes;
-    Eight of_axis = zero();
-    Eight before = zero();
+    Sixteen of_axis = zero();
+    Sixteen before = zero();
     for (int k = 0; k < rings.length[g]; ++k) {
       const std::uint16_t* q = at.next_corner();
-      const Eight3 dq = load_rows(u, q).v - ua;
-      const Eight3 Eq = at.next3();
+      const Sixteen3 dq = load_rows(u, q).v - ua;
+      const Sixteen3 Eq = at.next3();
       at.next();
-      const Eight share = at.next();
-      const Eight3 ep = Ep + dp;
-      const Eight3 eq = Eq + dq;
-      const Eight3 c = cross(d1, ep) + cross(E1, dp);
-      const Eight dv = set(1.0f / 6.0f) * (dot(c, eq) + dot(cross(E1, Ep), dq));
+      const Sixteen share = at.next();
+      const Sixteen3 ep = Ep + dp;
+      const Sixteen3 eq = Eq + dq;
+      const Sixteen3 c = cross(d1, ep) + cross(E1, dp);
+      const Sixteen dv = set(1.0f / 6.0f) * (dot(c, eq) + dot(cross(E1, Ep), dq));
       store(dv, change);
       change += packed_lanes;
-      const Eight part = share * dv;
+      const Sixteen part = share * dv;
       add_to(sum, p, before + part);
       before = part;
       of_axis = of_axis + part;
@@ -90,52 +90,52 @@ void volumes(const PackedGroups& rings, const float* u, float* change, float* fo
 // and on axis[0] minus their sum.
 float tet_forces(const PackedGroups& rings, const float* u, const float* change, float* force) {
   Cursor at{rings.corner, rings.data};
-  const Eight one = set(1.0f);
-  Eight smallest = one;
+  const Sixteen one = set(1.0f);
+  Sixteen smallest = one;
   for (Index g = 0; g < rings.groups; ++g) {
     const std::uint16_t* a = at.next_corner();
     const std::uint16_t* b = at.next_corner();
     const std::uint16_t* p = at.next_corner();
-    const Rows ra = load_rows(u, a);
-    const Rows rb = load_rows(u, b);
-    const Rows rp = load_rows(u, p);
-    const Eight of_axis = ra.w + rb.w;
-    const Eight3 d1 = rb.v - ra.v;
-    const Eight3 E1 = at.next3();
-    const Eight3 e1 = E1 + d1;
-    Eight pressure_p = rp.w;
-    Eight3 dp = rp.v - ra.v;
-    Eight3 Ep = at.next3();
-    Eight3 ep = Ep + dp;
-    const Eight m = -at.next();
-    const Eight kappa = at.next();
-    const Eight guard = set(static_cast<float>(guard_factor)) * at.next();
-    const Eight3 md1 = m * d1;
-    const Eight3 mE1 = m * E1;
-    Eight3 Cp = cross(e1, ep);
-    Eight3 mcp = cross(md1, ep) + cross(mE1, dp);
-    Eight3 on_p = {zero(), zero(), zero()};
-    Eight3 on_b = on_p;
-    Eight3 on_ring = on_p;
+    const Rows<parts> ra = load_rows(u, a);
+    const Rows<parts> rb = load_rows(u, b);
+    const Rows<parts> rp = load_rows(u, p);
+    const Sixteen of_axis = ra.w + rb.w;
+    const Sixteen3 d1 = rb.v - ra.v;
+    const Sixteen3 E1 = at.next3();
+    const Sixteen3 e1 = E1 + d1;
+    Sixteen pressure_p = rp.w;
+    Sixteen3 dp = rp.v - ra.v;
+    Sixteen3 Ep = at.next3();
+    Sixteen3 ep = Ep + dp;
+    const Sixteen m = -at.next();
+    const Sixteen kappa = at.next();
+    const Sixteen guard = set(static_cast<float>(guard_factor)) * at.next();
+    const Sixteen3 md1 = m * d1;
+    const Sixteen3 mE1 = m * E1;
+    Sixteen3 Cp = cross(e1, ep);
+    Sixteen3 mcp = cross(md1, ep) + cross(mE1, dp);
+    Sixteen3 on_p = zero3();
+    Sixteen3 on_b = on_p;
+    Sixteen3 on_ring = on_p;
     for (int k = 0; k < rings.length[g]; ++k) {
       const std::uint16_t* q = at.next_corner();
-      const Rows rq = load_rows(u, q);
-      const Eight3 dq = rq.v - ra.v;
-      const Eight3 Eq = at.next3();
-      const Eight3 eq = Eq + dq;
-      const Eight strain = load(change) * at.next();
+      const Rows<parts> rq = load_rows(u, q);
+      const Sixteen3 dq = rq.v - ra.v;
+      const Sixteen3 Eq = at.next3();
+      const Sixteen3 eq = Eq + dq;
+      const Sixteen strain = load(change) * at.next();
       change += packed_lanes;
-      const Eight ratio = one + strain;
+      const Sixteen ratio = one + strain;
       smallest = min(smallest, ratio);
       // The guard, as in volume_law.h.
-      const Eight lack = max(zero(), set(static_cast<float>(guard_threshold)) - ratio);
-      const Eight below = min(ratio, zero());
-      const Eight cells = at.next() * (of_axis + pressure_p + rq.w);
-      const Eight pressure = kappa * strain + cells - guard * (lack * lack - below * below);
-      const Eight s = set(-1.0f / 6.0f) * pressure;
+      const Sixteen lack = max(zero(), set(static_cast<float>(guard_threshold)) - ratio);
+      const Sixteen below = min(ratio, zero());
+      const Sixteen cells = at.next() * (of_axis + pressure_p + rq.w);
+      const Sixteen pressure = kappa * strain + cells - guard * (lack * lack - below * below);
+      const Sixteen s = set(-1.0f / 6.0f) * pressure;
 
-      const Eight3 Cq = cross(e1, eq);
-      const Eight3 mcq = cross(md1, eq) + cross(mE1, dq);
+      const Sixteen3 Cq = cross(e1, eq);
+      const Sixteen3 mcq = cross(md1, eq) + cross(mE1, dq);
       on_p = on_p + (mcq - s * Cq);
       add_rows(force, p, on_p);
       on_ring = on_ring + on_p;
@@ -156,48 +156,76 @@ float tet_forces(const PackedGroups& rings, const float* u, const float* change,
   return smallest_of(smallest);
 }
 
+// Adds -P g_a to every node of sixteen cells, P by its columns, and `pull` to the first node and
+// against the second.
+HWY_INLINE void push_nodes(const std::uint16_t* corner, const float* gradients, int nodes,
+                           const Sixteen3& pX, const Sixteen3& pY, const Sixteen3& pZ,
+                           const Sixteen3& pull, float* force) {
+  Sixteen3 on_first = zero3();
+  for (int a = 1; a < nodes; ++a) {
+    const float* of_node = gradients + (a - 1) * 3 * packed_lanes;
+    Sixteen3 f;
+    for (std::size_t p = 0; p < parts; ++p) {
+      const One3 gradient = load3<1>(of_node + p * lanes);
+      set_part(
+          f, p,
+          gradient.x * part_of(pX, p) + gradient.y * part_of(pY, p) + gradient.z * part_of(pZ, p));
+    }
+    if (a == 1) f = f + pull;
+    on_first = on_first + f;
+    add_rows(force, corner + a * packed_lanes, -f);
+  }
+  add_rows(force, corner, on_first);
+}
+
 // With F = 1 + H, H = sum_a (u_a - u_0) g_a^T, no terms cancel at rest:
 //   J - 1 = tr H + tr cof H + det H,   cof F = 1 + D,   D = tr H 1 - H^T + cof H,
-// and a node gets -(V s cof F - V s_rest) g_a = -(V kappa (J - 1) 1 + V s D) g_a.
+// and a node gets -V (mu F + s cof F) g_a = -V (mu H + kappa (J - 1) 1 + s D) g_a, s = kappa (J -
+// 1)
+// - mu. The network's springs within the cell are mu F: no list of them is needed here.
 void edge_forces(const PackedGroups& edge_cells, const float* u, float* force) {
-  Cursor at{edge_cells.corner, edge_cells.data};
+  const std::uint16_t* corner = edge_cells.corner;
+  const float* data = edge_cells.data;
   for (Index g = 0; g < edge_cells.groups; ++g) {
     const int nodes = edge_cells.length[g];
-    const Eight shear = at.next();
-    const Eight bulk = at.next();
-    const std::uint16_t* first = at.next_corner();
-    const Eight3 u0 = load_rows(u, first).v;
-    const Cursor ends = at;
-    Eight3 X = {zero(), zero(), zero()};  // the columns of H
-    Eight3 Y = X;
-    Eight3 Z = X;
-    for (int a = 1; a < nodes; ++a) {
-      const Eight3 d = load_rows(u, at.next_corner()).v - u0;
-      const Eight3 gradient = at.next3();
-      X = X + gradient.x * d;
-      Y = Y + gradient.y * d;
-      Z = Z + gradient.z * d;
+    Sixteen3 pX, pY, pZ;  // the columns of V (mu H + kappa (J - 1) 1 + s D)
+    Sixteen3 pull = zero3();
+    for (std::size_t p = 0; p < parts; ++p) {  // a part at a time: nine sums fill the registers
+      const std::uint16_t* end = corner + p * lanes;
+      const float* at = data + p * lanes;
+      const One shear = load<1>(at);
+      const One bulk = load<1>(at + packed_lanes);
+      const One spring = load<1>(at + 2 * packed_lanes);
+      at += edge_cell_head_fields * packed_lanes;
+      const One3 u0 = load_rows<1>(u, end).v;
+      One3 X = zero3<1>();  // the columns of H
+      One3 Y = X;
+      One3 Z = X;
+      for (int a = 1; a < nodes; ++a) {
+        end += packed_lanes;
+        const One3 d = load_rows<1>(u, end).v - u0;
+        if (a == 1) set_part(pull, p, spring * d);
+        const One3 gradient = load3<1>(at);
+        at += edge_cell_node_fields * packed_lanes;
+        X = X + gradient.x * d;
+        Y = Y + gradient.y * d;
+        Z = Z + gradient.z * d;
+      }
+      const One3 cX = cross(Y, Z);
+      const One3 cY = cross(Z, X);
+      const One3 cZ = cross(X, Y);
+      const One trace = X.x + Y.y + Z.z;
+      const One press = bulk * (trace + (cX.x + cY.y + cZ.z) + dot(X, cX));
+      const One s = press - shear;
+      const One own = press + s * trace;
+      set_part(pX, p, shear * X + One3{s * (cX.x - X.x) + own, s * (cX.y - Y.x), s * (cX.z - Z.x)});
+      set_part(pY, p, shear * Y + One3{s * (cY.x - X.y), s * (cY.y - Y.y) + own, s * (cY.z - Z.y)});
+      set_part(pZ, p, shear * Z + One3{s * (cZ.x - X.z), s * (cZ.y - Y.z), s * (cZ.z - Z.z) + own});
     }
-    const Eight3 cX = cross(Y, Z);
-    const Eight3 cY = cross(Z, X);
-    const Eight3 cZ = cross(X, Y);
-    const Eight trace = X.x + Y.y + Z.z;
-    const Eight press = bulk * (trace + (cX.x + cY.y + cZ.z) + dot(X, cX));
-    const Eight s = press - shear;
-    const Eight own = press + s * trace;
-    const Eight3 pX = {s * (cX.x - X.x) + own, s * (cX.y - Y.x), s * (cX.z - Z.x)};
-    const Eight3 pY = {s * (cY.x - X.y), s * (cY.y - Y.y) + own, s * (cY.z - Z.y)};
-    const Eight3 pZ = {s * (cZ.x - X.z), s * (cZ.y - Y.z), s * (cZ.z - Z.z) + own};
-    Eight3 on_first = {zero(), zero(), zero()};
-    at = ends;
-    for (int a = 1; a < nodes; ++a) {
-      const std::uint16_t* end = at.next_corner();
-      const Eight3 gradient = at.next3();
-      const Eight3 f = gradient.x * pX + gradient.y * pY + gradient.z * pZ;
-      on_first = on_first + f;
-      add_rows(force, end, -f);
-    }
-    add_rows(force, first, on_first);
+    const float* gradients = data + edge_cell_head_fields * packed_lanes;
+    push_nodes(corner, gradients, nodes, pX, pY, pZ, pull, force);
+    corner += nodes * packed_lanes;
+    data = gradients + (nodes - 1) * edge_cell_node_fields * packed_lanes;
   }
 }
 
@@ -206,28 +234,28 @@ void edge_forces(const PackedGroups& edge_cells, const float* u, float* force) {
 double spring_forces(const PackedGroups& one_rings, const float* u, const float* velocity,
                      float* force) {
   Cursor at{one_rings.corner, one_rings.data};
-  Eight heat = zero();
+  Sixteen heat = zero();
   for (Index g = 0; g < one_rings.groups; ++g) {
     const std::uint16_t* centre = at.next_corner();
-    const Eight3 ui = load_rows(u, centre).v;
-    const Eight3 vi = load_rows(velocity, centre).v;
-    Eight3 on_centre = {zero(), zero(), zero()};
+    const Sixteen3 ui = load_rows(u, centre).v;
+    const Sixteen3 vi = load_rows(velocity, centre).v;
+    Sixteen3 on_centre = zero3();
     for (int k = 0; k < one_rings.length[g]; ++k) {
       const std::uint16_t* end = at.next_corner();
-      const Eight3 change = load_rows(u, end).v - ui;
-      const Eight3 speed = load_rows(velocity, end).v - vi;
-      const Eight3 rest = at.next3();
-      const Eight3 x = rest + change;
-      const Eight length2 = dot(x, x);
-      const Eight length = sqrt(length2);
-      const Eight grown2 = dot(change, rest + x) + at.next();
-      const Eight sum = length + at.next();
+      const Sixteen3 change = load_rows(u, end).v - ui;
+      const Sixteen3 speed = load_rows(velocity, end).v - vi;
+      const Sixteen3 rest = at.next3();
+      const Sixteen3 x = rest + change;
+      const Sixteen length2 = dot(x, x);
+      const Sixteen length = sqrt(length2);
+      const Sixteen grown2 = dot(change, rest + x) + at.next();
+      const Sixteen sum = length + at.next();
       // Ends closer than 1e-10 m have no direction.
-      const Eight r = inverse_where_above(1e-20f, length2, sum * length2);
-      const Eight stiffness = at.next();
-      const Eight along = dot(speed, x);
-      const Eight dashpot = at.next() * along * (sum * r);
-      const Eight3 f = (stiffness * grown2 * (length * r) + dashpot) * x;
+      const Sixteen r = inverse_where_above(1e-20f, length2, sum * length2);
+      const Sixteen stiffness = at.next();
+      const Sixteen along = dot(speed, x);
+      const Sixteen dashpot = at.next() * along * (sum * r);
+      const Sixteen3 f = (stiffness * grown2 * (length * r) + dashpot) * x;
       heat = heat + dashpot * along;
       on_centre = on_centre + f;
       add_rows(force, end, -f);
@@ -241,47 +269,9 @@ double spring_forces(const PackedGroups& one_rings, const float* u, const float*
   return sum;
 }
 
-// sum_j k_ij u_j for both nodes of a pair, or for one of them with four lanes: every fourth entry
-// of the list is added to the same partial sum.
-template <class D>
-HWY_INLINE hn::Vec<D> pull_of_rows(D d, const PackedRows& rows, std::size_t begin, std::size_t end,
-                                   const float* stiffness, const float* u) {
-  const auto at = [&](std::size_t k) HWY_ATTR {
-    if constexpr (hn::MaxLanes(D()) == 8) {
-      return hn::LoadDup128(d, u + std::size_t{rows.offset[k]});
-    } else {
-      return hn::LoadU(d, u + std::size_t{rows.offset[k]});
-    }
-  };
-  auto a = hn::Zero(d);
-  auto b = a;
-  auto c = a;
-  auto e = a;
-  for (std::size_t k = begin; k < end; k += 4) {
-    const auto four = hn::LoadU(d, stiffness + 2 * k);
-    a = hn::Add(a, hn::Mul(hn::Broadcast<0>(four), at(k)));
-    b = hn::Add(b, hn::Mul(hn::Broadcast<1>(four), at(k + 1)));
-    c = hn::Add(c, hn::Mul(hn::Broadcast<2>(four), at(k + 2)));
-    e = hn::Add(e, hn::Mul(hn::Broadcast<3>(four), at(k + 3)));
-  }
-  return hn::Add(hn::Add(a, b), hn::Add(c, e));
-}
-
-void gather(const Frame& frame, const PackedRows& rows, const PackedSlots& slots, const float* u,
-            Range pairs, float* force) {
+void gather(const Frame& frame, const PackedSlots& slots, Index nodes, float* force) {
   const Lanes d;
-  const float* own = slots.own;
-  for (auto p = uz(pairs.begin); p < uz(pairs.end); ++p, own += 8) {
-    float* to = force + 8 * (p - uz(pairs.begin));
-    for (std::size_t part = 0; part < parts; ++part) {
-      V sum = hn::LoadU(d, own + lanes * part);
-      if (rows.start != nullptr) {
-        sum = hn::Add(sum, pull_of_rows(d, rows, uz(rows.start[p]), uz(rows.start[p + 1]),
-                                        rows.stiffness + lanes * part, u));
-      }
-      hn::StoreU(sum, d, to + lanes * part);
-    }
-  }
+  std::copy_n(slots.own, 4 * uz(nodes), force);
   for (Index k = 0; k < slots.others; ++k) {
     add_four(force + std::size_t{slots.node[k]},
              hn::LoadU(Four(), slots.force + 4 * uz(slots.other[k])));
@@ -293,7 +283,7 @@ void gather(const Frame& frame, const PackedRows& rows, const PackedSlots& slots
   const V R0 = hn::LoadDup128(d, axis);
   const V R1 = hn::LoadDup128(d, axis + 4);
   const V R2 = hn::LoadDup128(d, axis + 8);
-  for (std::size_t k = 0; k < 8 * uz(pairs.size()); k += lanes) {
+  for (std::size_t k = 0; k < 4 * uz(nodes); k += lanes) {
     const V f = hn::LoadU(d, force + k);
     hn::StoreU(hn::Add(hn::Add(hn::Mul(hn::Broadcast<0>(f), R0), hn::Mul(hn::Broadcast<1>(f), R1)),
                        hn::Mul(hn::Broadcast<2>(f), R2)),
@@ -333,9 +323,8 @@ double packed_spring_forces(const PackedGroups& one_rings, const float* u, const
   return HWY_DYNAMIC_DISPATCH(spring_forces)(one_rings, u, velocity, force);
 }
 
-void packed_gather(const Frame& frame, const PackedRows& rows, const PackedSlots& slots,
-                   const float* u, Range pairs, float* force) {
-  HWY_DYNAMIC_DISPATCH(gather)(frame, rows, slots, u, pairs, force);
+void packed_gather(const Frame& frame, const PackedSlots& slots, Index nodes, float* force) {
+  HWY_DYNAMIC_DISPATCH(gather)(frame, slots, nodes, force);
 }
 
 }  // namespace sinew

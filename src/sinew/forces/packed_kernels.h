@@ -1,10 +1,10 @@
-// The loops of PackedForces over groups of eight rings of tets, edge cells or one-rings of springs,
-// for every instruction set that the processor may have; all give the same bits.
+// The loops of PackedForces over groups of sixteen rings of tets, edge cells or one-rings of
+// springs, for every instruction set that the processor may have; all give the same bits.
 //
-// A group is eight rings of the same length, one per lane. Its corners are stored as
-//   axis[0], axis[1], ring[0], ring[1], ...   eight of each,
+// A group is sixteen rings of the same length, one per lane. Its corners are stored as
+//   axis[0], axis[1], ring[0], ring[1], ...   sixteen of each,
 // each as 4 x slot: the offset of the slot's four floats. Its data are a head and then, for each
-// tet, the data of the tet and of the ring's next node, eight of each field.
+// tet, the data of the tet and of the ring's next node, sixteen of each field.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace sinew {
 
-inline constexpr Index packed_lanes = 8;
+inline constexpr Index packed_lanes = 16;
 // Head: rest edges from axis[0] to axis[1] and to ring[0] (6) [m], mu / 6 [Pa], kappa [Pa], mu of
 // the guard [Pa].
 inline constexpr Index ring_head_fields = 9;
@@ -24,9 +24,11 @@ inline constexpr Index ring_tet_fields = 5;
 // X_ij (3) [m], |X_ij|^2 - l0^2 [m2], l0 [m], k [N/m], c [N s/m]; i is the one-ring's centre.
 inline constexpr Index one_ring_spring_fields = 7;
 
-// Head of eight edge cells: V mu, V kappa [J].
-inline constexpr Index edge_cell_head_fields = 2;
-// g_a of every node but the first [1/m], whose gradient is minus their sum.
+// Head of sixteen edge cells: V mu, V kappa [J], and k [N/m] of the spring of rest length zero
+// between the ends of the edge.
+inline constexpr Index edge_cell_head_fields = 3;
+// g_a of every node but the first [1/m], whose gradient is minus their sum. A cell with fewer nodes
+// than the group has its first node again, with a gradient of zero.
 inline constexpr Index edge_cell_node_fields = 3;
 
 // Groups of rings, edge cells or one-rings, one after the other.
@@ -44,18 +46,12 @@ void packed_volumes(const PackedGroups& rings, const float* u, float* change, fl
 // their weights. Returns the smallest v/V.
 float packed_tet_forces(const PackedGroups& rings, const float* u, const float* change,
                         float* force);
-// Adds the forces of the edge cells' volumes.
+// Adds the forces of the edge cells' energies and of the springs between the ends of their edges.
 void packed_edge_forces(const PackedGroups& edge_cells, const float* u, float* force);
 // Adds the forces of the springs; returns the heat of the dashpots [W].
 double packed_spring_forces(const PackedGroups& one_rings, const float* u, const float* velocity,
                             float* force);
 
-// Rows of the network in pairs: both nodes of a pair have the same list of neighbours.
-struct PackedRows {
-  const Index* start = nullptr;           // offsets into `offset` (pairs + 1); multiples of four
-  const std::uint32_t* offset = nullptr;  // 4 x node
-  const float* stiffness = nullptr;       // for four of the list: 4 of one node, 4 of the other
-};
 // The slots with forces on the nodes of a patch: its own, in the order of the nodes, and some of
 // other patches.
 struct PackedSlots {
@@ -65,8 +61,7 @@ struct PackedSlots {
   const std::uint16_t* node = nullptr;  // 4 x the node, relative to the patch's first (others)
   Index others = 0;
 };
-// force = R (sum_j k_ij u_j + the forces of the node's slots), four floats per node, for the pairs.
-void packed_gather(const Frame& frame, const PackedRows& rows, const PackedSlots& slots,
-                   const float* u, Range pairs, float* force);
+// force = R (the forces of the node's slots), four floats per node, for an even number of nodes.
+void packed_gather(const Frame& frame, const PackedSlots& slots, Index nodes, float* force);
 
 }  // namespace sinew

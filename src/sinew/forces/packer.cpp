@@ -8,11 +8,13 @@
 #include "sinew/base/cancel.h"
 #include "sinew/base/error.h"
 #include "sinew/base/sort_by_key.h"
+#include "sinew/forces/network.h"
 #include "sinew/forces/packed.h"
 #include "sinew/forces/packed_groups.h"
 #include "sinew/forces/volume_cells.h"
 #include "sinew/mesh/bisect.h"
 #include "sinew/mesh/edge_rings.h"
+#include "sinew/mesh/edges.h"
 
 namespace sinew {
 namespace {
@@ -60,7 +62,8 @@ class Packer {
       for (const Index i : model_.tets[uz(t)]) patch = std::min(patch, patch_of_[uz(i)]);
       tets[uz(patch)].push_back(t);
     }
-    for (Index e = 0; e < model_.edge_cells.count(); ++e) {
+    find_springs_of_edges();
+    for (Index e = 0; e < static_cast<Index>(edge_spring_.size()); ++e) {
       Index patch = to_.patch_count();
       for (const Index i : nodes_of(e)) patch = std::min(patch, patch_of_[uz(i)]);
       edge_cells[uz(patch)].push_back(e);
@@ -100,17 +103,58 @@ class Packer {
     }
     pack_loose(loose);
     list_slots();
-    stop_if_cancelled();
-    pack_network();
     allocate_scratch();
   }
 
  private:
+  // Edges without a cell are numbered after the edge cells.
   std::span<const Index> nodes_of(Index edge_cell) const {
+    if (edge_cell >= model_.edge_cells.count())
+      return bare_edges_[uz(edge_cell - model_.edge_cells.count())];
     const Range slots = model_.edge_cells.slots(edge_cell);
     return std::span(model_.edge_cells.node).subspan(uz(slots.begin), uz(slots.size()));
   }
   Index body_of(Index node) const { return to_.body_of_[uz(packed_of_[uz(node)])]; }
+
+  // The share of single tets in the network: springs along the edges of the tet,
+  // k_ij = -mu_t V G_i . G_j. Those of the tets of an edge cell act with it. Where no tet is in
+  // one, they act on the bare edge.
+  void find_springs_of_edges() {
+    const GradientCells& cells = model_.edge_cells;
+    edge_spring_.assign(uz(cells.count()), 0.0);
+    std::vector<char> covered(model_.tets.size(), 0);
+    for (std::size_t k = 0; k < model_.edge_tet.size(); ++k) {
+      const auto t = uz(model_.edge_tet[k]);
+      const Index e = model_.edge_tet_cell[k];
+      covered[t] = 1;
+      edge_spring_[uz(e)] += spring_of_tet(t, nodes_of(e)[0], nodes_of(e)[1]);
+    }
+    std::vector<Tet> bare;
+    std::vector<std::size_t> ids;
+    for (std::size_t t = 0; t < model_.tets.size(); ++t) {
+      if (covered[t] != 0 || model_.tet_shear[t] == 0.0) continue;
+      bare.push_back(model_.tets[t]);
+      ids.push_back(t);
+    }
+    EdgeTable table = build_edges(bare, model_.node_count());
+    for (Index e = 0; e < table.edge_count(); ++e) {
+      double sum = 0.0;
+      const auto [i, j] = table.edges[uz(e)];
+      for (const Index k : table.tets_of(e)) sum += spring_of_tet(ids[uz(k)], i, j);
+      edge_spring_.push_back(sum);
+    }
+    bare_edges_ = std::move(table.edges);
+  }
+  double spring_of_tet(std::size_t t, Index i, Index j) const {
+    if (model_.tet_shear[t] == 0.0) return 0.0;
+    const Tet& tet = model_.tets[t];
+    const std::array<Vec3, 4> gradient = shape_gradients(model_.rest_position, tet);
+    const auto at = [&](Index node) {
+      return gradient[static_cast<std::size_t>(std::find(tet.begin(), tet.end(), node) -
+                                               tet.begin())];
+    };
+    return -model_.tet_shear[t] * model_.rest_volume[t] * at(i).dot(at(j));
+  }
 
   // Makes the patches of the bodies' nodes and of the nodes of no body; in each, neighbours are
   // near each other.
@@ -190,7 +234,7 @@ class Packer {
 
   // Starts a patch without nodes of its own if the next group, with so many corners per lane, may
   // need more slots than 16 bits can count: a node may have any number of tets and springs.
-  void make_room(std::size_t corners, std::size_t lanes = 8) {
+  void make_room(std::size_t corners, std::size_t lanes = uz(packed_lanes)) {
     if (to_.slot_node_.size() - first_slot_ + lanes * corners <= most_slots) return;
     const Index body = to_.patches_[uz(patch_)].body;
     end_patch();
@@ -294,17 +338,21 @@ class Packer {
     Fields head(to_.edge_cell_data_, edge_cell_head_fields);
     for (std::size_t lane = 0; lane < cells.size(); ++lane) {
       const auto e = uz(cells[lane]);
+      head.put(2, lane, edge_spring_[e]);
+      if (cells[lane] >= model_.edge_cells.count()) continue;
       head.put(0, lane, model_.edge_cells.volume[e] * model_.edge_shear[e]);
       head.put(1, lane, model_.edge_cells.volume[e] * model_.edge_bulk[e]);
     }
     for (std::size_t a = 0; a < nodes; ++a) {
       for (std::size_t lane = 0; lane < cells.size(); ++lane) {
+        const std::span<const Index> of_cell = nodes_of(cells[lane]);
         to_.edge_cell_corner_[corner + a * uz(packed_lanes) + lane] =
-            slot(nodes_of(cells[lane])[a]);
+            slot(of_cell[a < of_cell.size() ? a : 0]);
       }
       if (a == 0) continue;
       Fields fields(to_.edge_cell_data_, edge_cell_node_fields);
       for (std::size_t lane = 0; lane < cells.size(); ++lane) {
+        if (cells[lane] >= model_.edge_cells.count() || a >= nodes_of(cells[lane]).size()) continue;
         const auto first = uz(model_.edge_cells.slots(cells[lane]).begin);
         fields.put(0, lane, model_.edge_cells.gradient[first + a]);
       }
@@ -400,57 +448,6 @@ class Packer {
     }
   }
 
-  // The rows of two nodes next to each other, with the diagonal: -sum_j k_ij on the node itself.
-  void pack_network() {
-    if (model_.network_start.empty()) return;
-    to_.row_start_.push_back(0);
-    struct Entry {
-      Index node;  // packed
-      std::array<double, 2> stiffness;
-    };
-    std::vector<Entry> row;
-    for (std::size_t pair = 0; 2 * pair < to_.node_of_.size(); ++pair) {
-      row.clear();
-      for (std::size_t end = 0; end < 2; ++end) {
-        const Index i = to_.node_of_[2 * pair + end];
-        if (i < 0) continue;
-        const auto add = [&](Index node, double k) {
-          row.push_back({node, {end == 0 ? k : 0.0, end == 0 ? 0.0 : k}});
-        };
-        double sum = 0.0;
-        for (auto e = uz(model_.network_start[uz(i)]); e < uz(model_.network_start[uz(i) + 1]);
-             ++e) {
-          const auto k = static_cast<double>(static_cast<float>(model_.network_stiffness[e]));
-          add(packed_of_[uz(model_.network_node[e])], k);
-          sum += k;
-        }
-        add(static_cast<Index>(2 * pair + end), -sum);
-      }
-      std::sort(row.begin(), row.end(),
-                [](const Entry& a, const Entry& b) { return a.node < b.node; });
-      std::size_t kept = 0;
-      for (const Entry& entry : row) {
-        if (kept > 0 && row[kept - 1].node == entry.node) {
-          for (std::size_t end = 0; end < 2; ++end)
-            row[kept - 1].stiffness[end] += entry.stiffness[end];
-        } else {
-          row[kept++] = entry;
-        }
-      }
-      row.resize(kept);
-      while (row.size() % 4 != 0) row.push_back({static_cast<Index>(2 * pair), {0.0, 0.0}});
-      for (std::size_t k = 0; k < row.size(); ++k) {
-        to_.row_offset_.push_back(4 * static_cast<std::uint32_t>(row[k].node));
-        if (k % 4 == 0) to_.row_stiffness_.resize(to_.row_stiffness_.size() + 8, 0.0f);
-        float* four = to_.row_stiffness_.data() + to_.row_stiffness_.size() - 8;
-        for (std::size_t end = 0; end < 2; ++end) {
-          four[4 * end + k % 4] = static_cast<float>(row[k].stiffness[end]);
-        }
-      }
-      to_.row_start_.push_back(size(to_.row_offset_));
-    }
-  }
-
   void allocate_scratch() {
     const std::size_t nodes = to_.node_of_.size();
     const std::size_t slots = to_.slot_node_.size();
@@ -469,10 +466,12 @@ class Packer {
 
   const Model& model_;
   PackedForces& to_;
-  std::vector<Index> packed_of_;  // (nodes)
-  std::vector<Index> patch_of_;   // (nodes)
-  std::vector<double> weight_;    // (cells)
-  std::vector<Index> slot_of_;    // the node's first slot in the patch (packed nodes) -1: none
+  std::vector<Index> packed_of_;     // (nodes)
+  std::vector<Index> patch_of_;      // (nodes)
+  std::vector<double> weight_;       // (cells)
+  std::vector<double> edge_spring_;  // [N/m] (edge cells, then bare edges)
+  std::vector<Edge> bare_edges_;     // node ids
+  std::vector<Index> slot_of_;       // the node's first slot in the patch (packed nodes) -1: none
   std::map<std::pair<Index, Index>, Index> other_slots_;  // (packed node, cell) -> other slots
   std::size_t first_slot_ = 0;                            // first slot of the patch
   Index patch_ = 0;                                       // the current patch
