@@ -12,7 +12,7 @@
 #include "sinew/forces/terms.h"
 #include "sinew/forces/volume.h"
 #include "sinew/mesh/shapes.h"
-#include "sinew/solver/tangent_matrix.h"
+#include "sinew/solver/tangent_operator.h"
 #include "sinew/solver/verlet.h"
 #include "sinew/study/bench_loops.h"
 
@@ -108,7 +108,7 @@ int main() {
              [&] { at = compute_tet_state(m, bar.state.position, std::move(at)); });
   count_tets("double_step", counted_double_step, [&] { verlet(bar); });
 
-  TangentMatrix matrix(m);
+  TangentOperator matrix(m, std::make_shared<PackedLayout>(m));
   const Objective objective{.model = m, .controls = initial_controls(m), .inertia = 3600.0};
   at = compute_tet_state(m, bar.state.position, std::move(at));
   count_tets("tangent_assembly", counted_tangent_assembly,

@@ -53,7 +53,7 @@ double difference(const Model& m, double inertia, double rate) {
                       .rate = rate,
                       .from = &lagged,
                       .lagged = &lagged};
-  TangentMatrix matrix(m);
+  TangentOperator matrix(m, std::make_shared<PackedLayout>(m));
   matrix.assemble(objective, s.position, 0.0, compute_tet_state(m, s.position));
 
   const Field u = noise(m, 1.0, 2);
@@ -75,7 +75,7 @@ double difference(const Model& m, double inertia, double rate) {
   return std::sqrt(error / size);
 }
 
-TEST(TangentMatrix, IsTheProductOfTheTerms) {
+TEST(TangentOperator, IsTheProductOfTheTerms) {
   Material network;
   EXPECT_LT(difference(clamped_bar(2, network), 0.0, 0.0), 1e-6);
   EXPECT_LT(difference(clamped_bar(2, network), 3600.0, 60.0), 1e-6);

@@ -9,7 +9,7 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
-#include "sinew/forces/sixteen-inl.h"
+#include "sinew/forces/cells-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace sinew {
@@ -156,28 +156,6 @@ float tet_forces(const PackedGroups& rings, const float* u, const float* change,
   return smallest_of(smallest);
 }
 
-// Adds -P g_a to every node of sixteen cells, P by its columns, and `pull` to the first node and
-// against the second.
-HWY_INLINE void push_nodes(const std::uint16_t* corner, const float* gradients, int nodes,
-                           const Sixteen3& pX, const Sixteen3& pY, const Sixteen3& pZ,
-                           const Sixteen3& pull, float* force) {
-  Sixteen3 on_first = zero3();
-  for (int a = 1; a < nodes; ++a) {
-    const float* of_node = gradients + (a - 1) * 3 * packed_lanes;
-    Sixteen3 f;
-    for (std::size_t p = 0; p < parts; ++p) {
-      const One3 gradient = load3<1>(of_node + p * lanes);
-      set_part(
-          f, p,
-          gradient.x * part_of(pX, p) + gradient.y * part_of(pY, p) + gradient.z * part_of(pZ, p));
-    }
-    if (a == 1) f = f + pull;
-    on_first = on_first + f;
-    add_rows(force, corner + a * packed_lanes, -f);
-  }
-  add_rows(force, corner, on_first);
-}
-
 // With F = 1 + H, H = sum_a (u_a - u_0) g_a^T, no terms cancel at rest:
 //   J - 1 = tr H + tr cof H + det H,   cof F = 1 + D,   D = tr H 1 - H^T + cof H,
 // and a node gets -V (mu F + s cof F) g_a = -V (mu H + kappa (J - 1) 1 + s D) g_a, s = kappa (J -
@@ -188,29 +166,15 @@ void edge_forces(const PackedGroups& edge_cells, const float* u, float* force) {
   const float* data = edge_cells.data;
   for (Index g = 0; g < edge_cells.groups; ++g) {
     const int nodes = edge_cells.length[g];
-    Sixteen3 pX, pY, pZ;  // the columns of V (mu H + kappa (J - 1) 1 + s D)
-    Sixteen3 pull = zero3();
-    for (std::size_t p = 0; p < parts; ++p) {  // a part at a time: nine sums fill the registers
-      const std::uint16_t* end = corner + p * lanes;
-      const float* at = data + p * lanes;
-      const One shear = load<1>(at);
-      const One bulk = load<1>(at + packed_lanes);
-      const One spring = load<1>(at + 2 * packed_lanes);
-      at += edge_cell_head_fields * packed_lanes;
-      const One3 u0 = load_rows<1>(u, end).v;
-      One3 X = zero3<1>();  // the columns of H
-      One3 Y = X;
-      One3 Z = X;
-      for (int a = 1; a < nodes; ++a) {
-        end += packed_lanes;
-        const One3 d = load_rows<1>(u, end).v - u0;
-        if (a == 1) set_part(pull, p, spring * d);
-        const One3 gradient = load3<1>(at);
-        at += edge_cell_node_fields * packed_lanes;
-        X = X + gradient.x * d;
-        Y = Y + gradient.y * d;
-        Z = Z + gradient.z * d;
-      }
+    const float* gradients = data + edge_cell_head_fields * packed_lanes;
+    Columns<parts> P;
+    Sixteen3 pull;
+    for (std::size_t p = 0; p < parts; ++p) {
+      const float* head = data + p * lanes;
+      const One shear = load<1>(head);
+      const One bulk = load<1>(head + packed_lanes);
+      const CellChange u_cell = change_of_cells(corner, gradients, nodes, p, u);
+      const auto& [X, Y, Z] = u_cell.gradient;
       const One3 cX = cross(Y, Z);
       const One3 cY = cross(Z, X);
       const One3 cZ = cross(X, Y);
@@ -218,12 +182,13 @@ void edge_forces(const PackedGroups& edge_cells, const float* u, float* force) {
       const One press = bulk * (trace + (cX.x + cY.y + cZ.z) + dot(X, cX));
       const One s = press - shear;
       const One own = press + s * trace;
-      set_part(pX, p, shear * X + One3{s * (cX.x - X.x) + own, s * (cX.y - Y.x), s * (cX.z - Z.x)});
-      set_part(pY, p, shear * Y + One3{s * (cY.x - X.y), s * (cY.y - Y.y) + own, s * (cY.z - Z.y)});
-      set_part(pZ, p, shear * Z + One3{s * (cZ.x - X.z), s * (cZ.y - Y.z), s * (cZ.z - Z.z) + own});
+      set_part(P, p,
+               {shear * X + One3{s * (cX.x - X.x) + own, s * (cX.y - Y.x), s * (cX.z - Z.x)},
+                shear * Y + One3{s * (cY.x - X.y), s * (cY.y - Y.y) + own, s * (cY.z - Z.y)},
+                shear * Z + One3{s * (cZ.x - X.z), s * (cZ.y - Y.z), s * (cZ.z - Z.z) + own}});
+      set_part(pull, p, load<1>(head + 2 * packed_lanes) * u_cell.edge);
     }
-    const float* gradients = data + edge_cell_head_fields * packed_lanes;
-    push_nodes(corner, gradients, nodes, pX, pY, pZ, pull, force);
+    push_nodes(corner, gradients, nodes, P, pull, force);
     corner += nodes * packed_lanes;
     data = gradients + (nodes - 1) * edge_cell_node_fields * packed_lanes;
   }

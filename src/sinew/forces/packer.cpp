@@ -1,4 +1,4 @@
-// Fills the arrays of PackedForces.
+// Fills the arrays of PackedLayout.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -8,13 +8,12 @@
 #include "sinew/base/cancel.h"
 #include "sinew/base/error.h"
 #include "sinew/base/sort_by_key.h"
-#include "sinew/forces/network.h"
-#include "sinew/forces/packed.h"
+#include "sinew/forces/edge_springs.h"
 #include "sinew/forces/packed_groups.h"
+#include "sinew/forces/packed_layout.h"
 #include "sinew/forces/volume_cells.h"
 #include "sinew/mesh/bisect.h"
 #include "sinew/mesh/edge_rings.h"
-#include "sinew/mesh/edges.h"
 
 namespace sinew {
 namespace {
@@ -49,25 +48,24 @@ std::array<Index, 3> frame_nodes_of(const Model& model, const Body& body) {
 
 class Packer {
  public:
-  Packer(const Model& model, PackedForces& to) : model_(model), to_(to) {}
+  Packer(const Model& model, PackedLayout& to)
+      : model_(model), to_(to), edge_springs_(find_edge_springs(model)) {}
 
   void pack() {
     order_nodes();
     const auto patches = uz(to_.patch_count());
     std::vector<std::vector<Index>> tets(patches);
-    std::vector<std::vector<Index>> edge_cells(patches);
+    std::vector<std::vector<Index>> edge_cells(patches), viscous_cells(patches);
     std::vector<std::vector<Index>> springs(patches);
     for (Index t = 0; model_.has_volume && t < model_.tet_count(); ++t) {
       Index patch = to_.patch_count();
       for (const Index i : model_.tets[uz(t)]) patch = std::min(patch, patch_of_[uz(i)]);
       tets[uz(patch)].push_back(t);
     }
-    find_springs_of_edges();
-    for (Index e = 0; e < static_cast<Index>(edge_spring_.size()); ++e) {
-      Index patch = to_.patch_count();
-      for (const Index i : nodes_of(e)) patch = std::min(patch, patch_of_[uz(i)]);
-      edge_cells[uz(patch)].push_back(e);
-    }
+    for (Index e = 0; e < edge_springs_.count(); ++e)
+      edge_cells[uz(patch_of_cell(model_.edge_cells, e))].push_back(e);
+    for (Index e = 0; e < model_.viscous_cells.count(); ++e)
+      viscous_cells[uz(patch_of_cell(model_.viscous_cells, e))].push_back(e);
     std::vector<Index> loose;
     for (const Range& active : model_.active_springs) {
       for (Index s = active.begin; s < active.end; ++s) {
@@ -91,70 +89,28 @@ class Packer {
                         make_room(most_corners_of_ring);
                         pack_rings(length, group);
                       });
-      group_by_size(
-          std::move(edge_cells[p]), static_cast<Index>(most_slots),
-          [&](Index e) { return static_cast<Index>(nodes_of(e).size()); },
-          [&](Index nodes, std::span<const Index> group) {
-            make_room(uz(nodes), group.size());
-            pack_edge_cells(uz(nodes), group);
-          });
+      pack_cells(std::move(edge_cells[p]), model_.edge_cells, to_.edge_cells);
+      pack_cells(std::move(viscous_cells[p]), model_.viscous_cells, to_.viscous_cells);
       pack_springs(springs[p]);
       end_patch();
     }
     pack_loose(loose);
     list_slots();
-    allocate_scratch();
   }
 
  private:
-  // Edges without a cell are numbered after the edge cells.
-  std::span<const Index> nodes_of(Index edge_cell) const {
-    if (edge_cell >= model_.edge_cells.count())
-      return bare_edges_[uz(edge_cell - model_.edge_cells.count())];
-    const Range slots = model_.edge_cells.slots(edge_cell);
-    return std::span(model_.edge_cells.node).subspan(uz(slots.begin), uz(slots.size()));
+  // Bare edges are numbered after the edge cells.
+  std::span<const Index> nodes_of(const GradientCells& cells, Index cell) const {
+    if (cell >= cells.count()) return edge_springs_.bare[uz(cell - cells.count())];
+    const Range slots = cells.slots(cell);
+    return std::span(cells.node).subspan(uz(slots.begin), uz(slots.size()));
   }
-  Index body_of(Index node) const { return to_.body_of_[uz(packed_of_[uz(node)])]; }
-
-  // The share of single tets in the network: springs along the edges of the tet,
-  // k_ij = -mu_t V G_i . G_j. Those of the tets of an edge cell act with it. Where no tet is in
-  // one, they act on the bare edge.
-  void find_springs_of_edges() {
-    const GradientCells& cells = model_.edge_cells;
-    edge_spring_.assign(uz(cells.count()), 0.0);
-    std::vector<char> covered(model_.tets.size(), 0);
-    for (std::size_t k = 0; k < model_.edge_tet.size(); ++k) {
-      const auto t = uz(model_.edge_tet[k]);
-      const Index e = model_.edge_tet_cell[k];
-      covered[t] = 1;
-      edge_spring_[uz(e)] += spring_of_tet(t, nodes_of(e)[0], nodes_of(e)[1]);
-    }
-    std::vector<Tet> bare;
-    std::vector<std::size_t> ids;
-    for (std::size_t t = 0; t < model_.tets.size(); ++t) {
-      if (covered[t] != 0 || model_.tet_shear[t] == 0.0) continue;
-      bare.push_back(model_.tets[t]);
-      ids.push_back(t);
-    }
-    EdgeTable table = build_edges(bare, model_.node_count());
-    for (Index e = 0; e < table.edge_count(); ++e) {
-      double sum = 0.0;
-      const auto [i, j] = table.edges[uz(e)];
-      for (const Index k : table.tets_of(e)) sum += spring_of_tet(ids[uz(k)], i, j);
-      edge_spring_.push_back(sum);
-    }
-    bare_edges_ = std::move(table.edges);
+  Index patch_of_cell(const GradientCells& cells, Index cell) const {
+    Index patch = to_.patch_count();
+    for (const Index i : nodes_of(cells, cell)) patch = std::min(patch, patch_of_[uz(i)]);
+    return patch;
   }
-  double spring_of_tet(std::size_t t, Index i, Index j) const {
-    if (model_.tet_shear[t] == 0.0) return 0.0;
-    const Tet& tet = model_.tets[t];
-    const std::array<Vec3, 4> gradient = shape_gradients(model_.rest_position, tet);
-    const auto at = [&](Index node) {
-      return gradient[static_cast<std::size_t>(std::find(tet.begin(), tet.end(), node) -
-                                               tet.begin())];
-    };
-    return -model_.tet_shear[t] * model_.rest_volume[t] * at(i).dot(at(j));
-  }
+  Index body_of(Index node) const { return to_.body_of[uz(packed_of_[uz(node)])]; }
 
   // Makes the patches of the bodies' nodes and of the nodes of no body; in each, neighbours are
   // near each other.
@@ -162,30 +118,30 @@ class Packer {
     packed_of_.assign(model_.rest_position.size(), -1);
     patch_of_.assign(model_.rest_position.size(), -1);
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      to_.frame_nodes_.push_back(frame_nodes_of(model_, model_.bodies[b]));
+      to_.frame_nodes.push_back(frame_nodes_of(model_, model_.bodies[b]));
       order_nodes_of(model_.bodies[b].nodes, static_cast<Index>(b));
     }
     order_nodes_of({model_.body_node_count(), model_.node_count()}, -1);
-    slot_of_.assign(to_.node_of_.size(), -1);
+    slot_of_.assign(to_.node_of.size(), -1);
   }
 
   void order_nodes_of(Range nodes, Index body) {
     std::vector<Index> order(uz(nodes.size()));
     std::iota(order.begin(), order.end(), nodes.begin);
-    for (const auto& part : bisect(model_.rest_position, order, PackedForces::most_nodes)) {
+    for (const auto& part : bisect(model_.rest_position, order, PackedLayout::most_nodes)) {
       bisect(model_.rest_position, part, 2);
-      PackedForces::Patch patch;
+      PackedLayout::Patch patch;
       patch.body = body;
-      patch.nodes.begin = static_cast<Index>(to_.node_of_.size());
+      patch.nodes.begin = static_cast<Index>(to_.node_of.size());
       for (const Index i : part) {
-        packed_of_[uz(i)] = static_cast<Index>(to_.node_of_.size());
+        packed_of_[uz(i)] = static_cast<Index>(to_.node_of.size());
         patch_of_[uz(i)] = to_.patch_count();
-        to_.node_of_.push_back(i);
+        to_.node_of.push_back(i);
       }
-      if (part.size() % 2 != 0) to_.node_of_.push_back(-1);
-      patch.nodes.end = static_cast<Index>(to_.node_of_.size());
-      to_.body_of_.resize(to_.node_of_.size(), body);
-      to_.patches_.push_back(patch);
+      if (part.size() % 2 != 0) to_.node_of.push_back(-1);
+      patch.nodes.end = static_cast<Index>(to_.node_of.size());
+      to_.body_of.resize(to_.node_of.size(), body);
+      to_.patches.push_back(patch);
     }
   }
 
@@ -198,8 +154,9 @@ class Packer {
         std::accumulate(weight_.begin(), weight_.end(), 0.0) / static_cast<double>(weight_.size());
     for (std::size_t c = 0; c < weight_.size(); ++c) {
       weight_[c] /= mean;
-      to_.cell_stiffness_.push_back(static_cast<float>(model_.cell_bulk[c] * weight_[c] *
-                                                       weight_[c] / model_.cell_volume[c]));
+      to_.cell_weight.push_back(static_cast<float>(weight_[c]));
+      to_.cell_stiffness.push_back(static_cast<float>(model_.cell_bulk[c] * weight_[c] *
+                                                      weight_[c] / model_.cell_volume[c]));
     }
   }
 
@@ -207,43 +164,50 @@ class Packer {
 
   void begin_patch(Index p) {
     patch_ = p;
-    PackedForces::Patch& patch = to_.patches_[uz(p)];
-    for (auto s = first_slot_; s < to_.slot_node_.size(); ++s) {
-      slot_of_[uz(to_.slot_node_[s])] = -1;
+    PackedLayout::Patch& patch = to_.patches[uz(p)];
+    for (auto s = first_slot_; s < to_.slot_node.size(); ++s) {
+      slot_of_[uz(to_.slot_node[s])] = -1;
     }
     other_slots_.clear();
-    first_slot_ = to_.slot_node_.size();
-    patch.slots.begin = size(to_.slot_node_);
+    first_slot_ = to_.slot_node.size();
+    patch.slots.begin = size(to_.slot_node);
     for (Index n = patch.nodes.begin; n < patch.nodes.end; ++n) add_slot(n, free_cell);
-    patch.first_tet = size(to_.tet_id_);
-    patch.rings = {{size(to_.ring_length_), 0}, size(to_.ring_corner_), size(to_.ring_data_)};
-    patch.edge_cells = {
-        {size(to_.edge_cell_length_), 0}, size(to_.edge_cell_corner_), size(to_.edge_cell_data_)};
+    patch.first_tet = size(to_.tet_id);
+    patch.rings = {{size(to_.ring_length), 0}, size(to_.ring_corner), size(to_.ring_data)};
+    const auto end_of = [](const PackedLayout::CellGroups& cells) {
+      return PackedLayout::Groups{{size(cells.length), 0}, size(cells.corner), size(cells.data)};
+    };
+    patch.edge_cells = end_of(to_.edge_cells);
+    patch.viscous_cells = end_of(to_.viscous_cells);
+    patch.first_cell = size(to_.edge_cells.id);
+    patch.first_viscous = size(to_.viscous_cells.id);
+    patch.first_spring = size(to_.spring_id);
     patch.one_rings = {
-        {size(to_.one_ring_length_), 0}, size(to_.one_ring_corner_), size(to_.one_ring_data_)};
+        {size(to_.one_ring_length), 0}, size(to_.one_ring_corner), size(to_.one_ring_data)};
   }
 
   void end_patch() {
-    PackedForces::Patch& patch = to_.patches_[uz(patch_)];
-    patch.slots.end = size(to_.slot_node_);
-    patch.rings.groups.end = size(to_.ring_length_);
-    patch.edge_cells.groups.end = size(to_.edge_cell_length_);
-    patch.one_rings.groups.end = size(to_.one_ring_length_);
-    std::replace(to_.slot_cell_.begin() + patch.slots.begin, to_.slot_cell_.end(), free_cell, -1);
+    PackedLayout::Patch& patch = to_.patches[uz(patch_)];
+    patch.slots.end = size(to_.slot_node);
+    patch.rings.groups.end = size(to_.ring_length);
+    patch.edge_cells.groups.end = size(to_.edge_cells.length);
+    patch.viscous_cells.groups.end = size(to_.viscous_cells.length);
+    patch.one_rings.groups.end = size(to_.one_ring_length);
+    std::replace(to_.slot_cell.begin() + patch.slots.begin, to_.slot_cell.end(), free_cell, -1);
   }
 
   // Starts a patch without nodes of its own if the next group, with so many corners per lane, may
   // need more slots than 16 bits can count: a node may have any number of tets and springs.
   void make_room(std::size_t corners, std::size_t lanes = uz(packed_lanes)) {
-    if (to_.slot_node_.size() - first_slot_ + lanes * corners <= most_slots) return;
-    const Index body = to_.patches_[uz(patch_)].body;
+    if (to_.slot_node.size() - first_slot_ + lanes * corners <= most_slots) return;
+    const Index body = to_.patches[uz(patch_)].body;
     end_patch();
     add_patch(body);
   }
   void add_patch(Index body) {
-    PackedForces::Patch patch;
+    PackedLayout::Patch patch;
     patch.body = body;
-    to_.patches_.push_back(patch);
+    to_.patches.push_back(patch);
     begin_patch(to_.patch_count() - 1);
   }
 
@@ -253,9 +217,9 @@ class Packer {
   }
 
   Index add_slot(Index packed, Index cell) {
-    const Index s = size(to_.slot_node_);
-    to_.slot_node_.push_back(packed);
-    to_.slot_cell_.push_back(cell);
+    const Index s = size(to_.slot_node);
+    to_.slot_node.push_back(packed);
+    to_.slot_cell.push_back(cell);
     if (slot_of_[uz(packed)] < 0) slot_of_[uz(packed)] = s;
     return s;
   }
@@ -266,7 +230,7 @@ class Packer {
     const Index n = packed_of_[uz(node)];
     const Index s = slot_of_[uz(n)];
     if (s < 0) return local(add_slot(n, cell));
-    Index& cell_of_slot = to_.slot_cell_[uz(s)];
+    Index& cell_of_slot = to_.slot_cell[uz(s)];
     if (cell_of_slot == free_cell) cell_of_slot = cell;
     if (cell_of_slot == cell) return local(s);
     const auto [entry, added] = other_slots_.try_emplace({n, cell}, 0);
@@ -285,17 +249,17 @@ class Packer {
   // --- tets ---
 
   void pack_rings(std::size_t length, std::span<const EdgeRing> rings) {
-    to_.ring_length_.push_back(static_cast<std::uint16_t>(length));
+    to_.ring_length.push_back(static_cast<std::uint16_t>(length));
     const auto& X = model_.rest_position;
-    const std::size_t corner = to_.ring_corner_.size();
-    to_.ring_corner_.resize(corner + (length + 3) * uz(packed_lanes), 0);
+    const std::size_t corner = to_.ring_corner.size();
+    to_.ring_corner.resize(corner + (length + 3) * uz(packed_lanes), 0);
     const auto put_corner = [&](std::size_t c, std::size_t lane, Index node, std::size_t tet) {
       const auto& nodes = model_.tets[tet];
       const auto a =
           static_cast<std::size_t>(std::find(nodes.begin(), nodes.end(), node) - nodes.begin());
-      to_.ring_corner_[corner + c * uz(packed_lanes) + lane] = slot(node, model_.cells[tet][a]);
+      to_.ring_corner[corner + c * uz(packed_lanes) + lane] = slot(node, model_.cells[tet][a]);
     };
-    Fields head(to_.ring_data_, ring_head_fields);
+    Fields head(to_.ring_data, ring_head_fields);
     for (std::size_t lane = 0; lane < rings.size(); ++lane) {
       const EdgeRing& ring = rings[lane];
       const auto t = uz(ring.tets[0]);
@@ -309,8 +273,8 @@ class Packer {
       head.put(8, lane, model_.tet_guard[t]);
     }
     for (std::size_t k = 0; k < length; ++k) {
-      Fields fields(to_.ring_data_, ring_tet_fields);
-      to_.tet_id_.resize(to_.tet_id_.size() + uz(packed_lanes), -1);
+      Fields fields(to_.ring_data, ring_tet_fields);
+      to_.tet_id.resize(to_.tet_id.size() + uz(packed_lanes), -1);
       for (std::size_t lane = 0; lane < rings.size(); ++lane) {
         const EdgeRing& ring = rings[lane];
         const auto t = uz(ring.tets[k]);
@@ -320,41 +284,59 @@ class Packer {
         double weights = 0.0;
         for (const Index c : model_.cells[t]) weights += c >= 0 ? weight_[uz(c)] : 0.0;
         if (weights > 0.0) fields.put(4, lane, 1.0 / weights);
-        to_.tet_id_[to_.tet_id_.size() - uz(packed_lanes) + lane] = ring.tets[k];
+        to_.tet_id[to_.tet_id.size() - uz(packed_lanes) + lane] = ring.tets[k];
       }
     }
   }
 
-  // --- edge cells ---
+  // --- edge cells and viscous cells ---
 
-  void pack_edge_cells(std::size_t nodes, std::span<const Index> cells) {
+  void pack_cells(std::vector<Index> ids, const GradientCells& cells,
+                  PackedLayout::CellGroups& to) {
+    group_by_size(
+        std::move(ids), static_cast<Index>(most_slots),
+        [&](Index e) { return static_cast<Index>(nodes_of(cells, e).size()); },
+        [&](Index nodes, std::span<const Index> group) {
+          make_room(uz(nodes), group.size());
+          pack_cell_group(uz(nodes), group, cells, to);
+        });
+  }
+
+  void pack_cell_group(std::size_t nodes, std::span<const Index> ids, const GradientCells& cells,
+                       PackedLayout::CellGroups& to) {
     if (nodes > most_slots) {
       throw Error(ErrorKind::input, fmt::format("{} tets share one edge of the mesh", nodes - 2),
                   fmt::format("mesh with at most {} around an edge", most_slots - 2));
     }
-    to_.edge_cell_length_.push_back(static_cast<std::uint16_t>(nodes));
-    const std::size_t corner = to_.edge_cell_corner_.size();
-    to_.edge_cell_corner_.resize(corner + nodes * uz(packed_lanes), 0);
-    Fields head(to_.edge_cell_data_, edge_cell_head_fields);
-    for (std::size_t lane = 0; lane < cells.size(); ++lane) {
-      const auto e = uz(cells[lane]);
-      head.put(2, lane, edge_spring_[e]);
-      if (cells[lane] >= model_.edge_cells.count()) continue;
-      head.put(0, lane, model_.edge_cells.volume[e] * model_.edge_shear[e]);
-      head.put(1, lane, model_.edge_cells.volume[e] * model_.edge_bulk[e]);
+    to.length.push_back(static_cast<std::uint16_t>(nodes));
+    const std::size_t corner = to.corner.size();
+    to.corner.resize(corner + nodes * uz(packed_lanes), 0);
+    const std::size_t first_id = to.id.size();
+    to.id.resize(first_id + uz(packed_lanes), -1);
+    Fields head(to.data, edge_cell_head_fields);
+    const bool viscous = &cells == &model_.viscous_cells;
+    for (std::size_t lane = 0; lane < ids.size(); ++lane) {
+      const auto e = uz(ids[lane]);
+      to.id[first_id + lane] = ids[lane];
+      if (viscous) {
+        head.put(0, lane, model_.viscous_weight[e]);
+        continue;
+      }
+      head.put(2, lane, edge_springs_.stiffness[e]);
+      if (ids[lane] >= cells.count()) continue;
+      head.put(0, lane, cells.volume[e] * model_.edge_shear[e]);
+      head.put(1, lane, cells.volume[e] * model_.edge_bulk[e]);
     }
     for (std::size_t a = 0; a < nodes; ++a) {
-      for (std::size_t lane = 0; lane < cells.size(); ++lane) {
-        const std::span<const Index> of_cell = nodes_of(cells[lane]);
-        to_.edge_cell_corner_[corner + a * uz(packed_lanes) + lane] =
-            slot(of_cell[a < of_cell.size() ? a : 0]);
+      for (std::size_t lane = 0; lane < ids.size(); ++lane) {
+        const std::span<const Index> of_cell = nodes_of(cells, ids[lane]);
+        to.corner[corner + a * uz(packed_lanes) + lane] = slot(of_cell[a < of_cell.size() ? a : 0]);
       }
       if (a == 0) continue;
-      Fields fields(to_.edge_cell_data_, edge_cell_node_fields);
-      for (std::size_t lane = 0; lane < cells.size(); ++lane) {
-        if (cells[lane] >= model_.edge_cells.count() || a >= nodes_of(cells[lane]).size()) continue;
-        const auto first = uz(model_.edge_cells.slots(cells[lane]).begin);
-        fields.put(0, lane, model_.edge_cells.gradient[first + a]);
+      Fields fields(to.data, edge_cell_node_fields);
+      for (std::size_t lane = 0; lane < ids.size(); ++lane) {
+        if (ids[lane] >= cells.count() || a >= nodes_of(cells, ids[lane]).size()) continue;
+        fields.put(0, lane, cells.gradient[uz(cells.slots(ids[lane]).begin) + a]);
       }
     }
   }
@@ -386,14 +368,16 @@ class Packer {
   }
 
   void pack_one_rings(std::size_t length, std::span<const OneRing> one_rings) {
-    to_.one_ring_length_.push_back(static_cast<std::uint16_t>(length));
-    const std::size_t corner = to_.one_ring_corner_.size();
-    to_.one_ring_corner_.resize(corner + (length + 1) * uz(packed_lanes), 0);
+    to_.one_ring_length.push_back(static_cast<std::uint16_t>(length));
+    const std::size_t corner = to_.one_ring_corner.size();
+    to_.one_ring_corner.resize(corner + (length + 1) * uz(packed_lanes), 0);
     for (std::size_t lane = 0; lane < one_rings.size(); ++lane) {
-      to_.one_ring_corner_[corner + lane] = slot(one_rings[lane].centre);
+      to_.one_ring_corner[corner + lane] = slot(one_rings[lane].centre);
     }
     for (std::size_t k = 0; k < length; ++k) {
-      Fields fields(to_.one_ring_data_, one_ring_spring_fields);
+      Fields fields(to_.one_ring_data, one_ring_spring_fields);
+      const std::size_t first_id = to_.spring_id.size();
+      to_.spring_id.resize(first_id + uz(packed_lanes), -1);
       for (std::size_t lane = 0; lane < uz(packed_lanes); ++lane) {
         if (lane >= one_rings.size()) {  // a spring of length 1 without stiffness
           fields.put(0, lane, 1.0);
@@ -403,7 +387,8 @@ class Packer {
         const auto s = uz(one_ring.springs[k]);
         const auto [i, j] = model_.springs[s];
         const Index other = i == one_ring.centre ? j : i;
-        to_.one_ring_corner_[corner + (k + 1) * uz(packed_lanes) + lane] = slot(other);
+        to_.spring_id[first_id + lane] = one_ring.springs[k];
+        to_.one_ring_corner[corner + (k + 1) * uz(packed_lanes) + lane] = slot(other);
         const Vec3 x = model_.rest_position[uz(other)] - model_.rest_position[uz(one_ring.centre)];
         const double l0 = model_.rest_length[s];
         fields.put(0, lane, x);
@@ -426,58 +411,43 @@ class Packer {
   // --- lists ---
 
   void list_slots() {
-    const Index slots = size(to_.slot_node_);
+    const Index slots = size(to_.slot_node);
     sort_by_key(
-        uz(model_.cell_count()), slots, [&](Index s) { return to_.slot_cell_[uz(s)]; },
-        to_.cell_start_, to_.cell_slot_);
+        uz(model_.cell_count()), slots, [&](Index s) { return to_.slot_cell[uz(s)]; },
+        to_.cell_start, to_.cell_slot);
     std::vector<Index> start;
     std::vector<Index> slot;
     sort_by_key(
-        to_.node_of_.size(), slots, [&](Index s) { return to_.slot_node_[uz(s)]; }, start, slot);
-    for (auto& patch : to_.patches_) {
-      patch.others.begin = size(to_.other_slot_);
+        to_.node_of.size(), slots, [&](Index s) { return to_.slot_node[uz(s)]; }, start, slot);
+    for (auto& patch : to_.patches) {
+      patch.others.begin = size(to_.other_slot);
       for (Index n = patch.nodes.begin; n < patch.nodes.end; ++n) {
         const Index own = patch.slots.begin + n - patch.nodes.begin;
         for (auto k = uz(start[uz(n)]); k < uz(start[uz(n) + 1]); ++k) {
           if (slot[k] == own) continue;
-          to_.other_slot_.push_back(slot[k]);
-          to_.other_node_.push_back(static_cast<std::uint16_t>(4 * (n - patch.nodes.begin)));
+          to_.other_slot.push_back(slot[k]);
+          to_.other_node.push_back(static_cast<std::uint16_t>(4 * (n - patch.nodes.begin)));
         }
       }
-      patch.others.end = size(to_.other_slot_);
+      patch.others.end = size(to_.other_slot);
     }
-  }
-
-  void allocate_scratch() {
-    const std::size_t nodes = to_.node_of_.size();
-    const std::size_t slots = to_.slot_node_.size();
-    to_.frames_.resize(to_.frame_nodes_.size());
-    to_.displacement_.assign(4 * nodes, 0.0f);
-    to_.slot_displacement_.assign(4 * slots, 0.0f);
-    to_.slot_force_.assign(4 * slots, 0.0f);
-    to_.tet_change_.assign(to_.tet_id_.size(), 0.0f);
-    to_.cell_pressure_.assign(uz(model_.cell_count()), 0.0f);
-    if (to_.one_ring_length_.empty()) return;
-    to_.velocity_.assign(4 * nodes, 0.0f);
-    to_.slot_velocity_.assign(4 * slots, 0.0f);
   }
 
   static constexpr Index free_cell = -2;  // a slot without a cell so far
 
   const Model& model_;
-  PackedForces& to_;
-  std::vector<Index> packed_of_;     // (nodes)
-  std::vector<Index> patch_of_;      // (nodes)
-  std::vector<double> weight_;       // (cells)
-  std::vector<double> edge_spring_;  // [N/m] (edge cells, then bare edges)
-  std::vector<Edge> bare_edges_;     // node ids
-  std::vector<Index> slot_of_;       // the node's first slot in the patch (packed nodes) -1: none
+  PackedLayout& to_;
+  std::vector<Index> packed_of_;  // (nodes)
+  std::vector<Index> patch_of_;   // (nodes)
+  std::vector<double> weight_;    // (cells)
+  const EdgeSprings edge_springs_;
+  std::vector<Index> slot_of_;  // the node's first slot in the patch (packed nodes) -1: none
   std::map<std::pair<Index, Index>, Index> other_slots_;  // (packed node, cell) -> other slots
   std::size_t first_slot_ = 0;                            // first slot of the patch
   Index patch_ = 0;                                       // the current patch
 };
 
-PackedForces::PackedForces(const Model& model) {
+PackedLayout::PackedLayout(const Model& model) {
   Packer(model, *this).pack();
 }
 

@@ -4,8 +4,8 @@
 
 namespace sinew {
 
-LinearSolver::LinearSolver(const Model& model)
-    : matrix_(model),
+LinearSolver::LinearSolver(const Model& model, std::shared_ptr<const PackedLayout> layout)
+    : tangent_(model, layout ? std::move(layout) : std::make_shared<PackedLayout>(model)),
       preconditioner_(model),
       r_(model.rest_position.size()),
       z_(r_),
@@ -22,16 +22,13 @@ LinearSolver::LinearSolver(const Model& model)
 
 void LinearSolver::factor(const Objective& objective, double time) {
   if (is_factored(objective)) return;
-  const Field& rest_position = objective.model.rest_position;
   Objective rest = objective;
-  rest.lagged = &rest_position;
   rest.constraints = nullptr;
   // The last digits of a step differ from frame to frame. Rounded, the kept factors are the same as
   // those that a resumed run computes again.
   rest.inertia = static_cast<double>(static_cast<float>(objective.inertia));
   if (rest.inertia > 0.0 && objective.rate > 0.0) rest.rate = std::sqrt(rest.inertia);
-  matrix_.assemble(rest, rest_position, time, compute_tet_state(objective.model, rest_position));
-  preconditioner_.factor(matrix_);
+  preconditioner_.factor(rest, time);
   factored_model_ = &objective.model;
   factored_inertia_ = static_cast<float>(objective.inertia);
 }
@@ -45,8 +42,8 @@ void LinearSolver::assemble(const Objective& objective, const Field& x, double t
                             const TetState& tets) {
   factor(objective, time);
   if (objective.constraints != nullptr) objective.constraints->linearise(x, tets);
-  matrix_.assemble(objective, x, time, tets);
-  preconditioner_.turn(x);
+  tangent_.assemble(objective, x, time, tets);
+  preconditioner_.turn(x, tangent_.outer_diagonal());
 }
 
 int LinearSolver::solve(const Field& r, double forcing, int most, const Deadline& deadline,
@@ -59,11 +56,11 @@ int LinearSolver::solve(const Field& r, double forcing, int most, const Deadline
     r_[uz(i)] = Float4(Vec3(r[uz(i)] / size));  // its squares stay within the range of a float
     p_[uz(i)] = Float4();
   });
-  double rz = preconditioner_.apply(matrix_, r_, z_);
+  double rz = preconditioner_.apply(r_, z_);
   d_ = z_;
   int products = 0;
   while (products < most) {
-    const double curvature = matrix_.times(d_, q_);
+    const double curvature = tangent_.times(d_, q_);
     ++products;
     if (!(curvature > 1e-12 * rz)) {
       if (products == 1) p_ = d_;
@@ -77,7 +74,7 @@ int LinearSolver::solve(const Field& r, double forcing, int most, const Deadline
     });
     if (!(std::sqrt(left) > forcing) || passed(deadline)) break;
     if (stop != nullptr && stop->load()) break;
-    const double next = preconditioner_.apply(matrix_, r_, z_);
+    const double next = preconditioner_.apply(r_, z_);
     const auto beta = static_cast<float>(next / rz);
     rz = next;
     parallel_for(nodes, [&](Index i) { d_[uz(i)] = z_[uz(i)] + beta * d_[uz(i)]; });

@@ -1,4 +1,4 @@
-// Newton's linear systems: conjugate gradients on the assembled tangent, with the two-level
+// Newton's linear systems: conjugate gradients on products with the tangent, with the two-level
 // preconditioner. docs/methods/linear-solver.md.
 #pragma once
 
@@ -6,20 +6,21 @@
 #include <memory>
 
 #include "sinew/solver/newton.h"
-#include "sinew/solver/tangent_matrix.h"
+#include "sinew/solver/tangent_operator.h"
 #include "sinew/solver/two_level.h"
 
 namespace sinew {
 
 class LinearSolver {
  public:
-  explicit LinearSolver(const Model& model);
+  // layout: of the model; null: makes one.
+  explicit LinearSolver(const Model& model, std::shared_ptr<const PackedLayout> layout = nullptr);
 
   // Factors the preconditioner for the objective's tangent at rest; does nothing if it is already
   // factored for the same model and inertia.
   void factor(const Objective& objective, double time);
 
-  // Assembles the tangent K of the objective at positions x, and factors the preconditioner if
+  // Takes the tangent K of the objective at positions x, and factors the preconditioner if
   // necessary. `tets` are those at x.
   void assemble(const Objective& objective, const Field& x, double time, const TetState& tets);
 
@@ -38,7 +39,7 @@ class LinearSolver {
  private:
   bool is_factored(const Objective& objective) const;
 
-  TangentMatrix matrix_;
+  TangentOperator tangent_;
   TwoLevel preconditioner_;
   const Model* factored_model_ = nullptr;  // the model of the factors in preconditioner_
   float factored_inertia_ = -1.0f;

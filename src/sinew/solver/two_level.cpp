@@ -1,11 +1,13 @@
 #include "sinew/solver/two_level.h"
 
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <map>
 
 #include "sinew/base/rotation.h"
 #include "sinew/mesh/bisect.h"
+#include "sinew/solver/rest_forms.h"
 
 namespace sinew {
 namespace {
@@ -87,60 +89,123 @@ TwoLevel::TwoLevel(const Model& model, Index group_size) : model_(model) {
   }
   rotation_.assign(centre_.size(), Mat3::Identity());
   coarse_.resize(centre_.size());
+  inverse_now_.resize(group_.size());
 }
 
-void TwoLevel::factor(const TangentMatrix& rest) {
-  std::vector<std::map<Index, CoarseBlock>> column(centre_.size());
-  const auto block = [&](Index row, Index col) -> CoarseBlock& {
-    const auto [entry, added] = column[uz(col)].try_emplace(row);
+namespace {
+
+// A symmetric positive definite 3 x 3 matrix near m; m itself if it is one.
+Mat3 definite(const Mat3& m) {
+  const Mat3 s = 0.5 * (m + m.transpose());
+  const double mean = s.trace() / 3.0;
+  if (s(0, 0) > 0.0 && s.topLeftCorner<2, 2>().determinant() > 0.0 &&
+      s.determinant() > 1e-9 * mean * mean * mean) {
+    return s;
+  }
+  return (mean > 0.0 ? mean : 1.0) * Mat3::Identity();
+}
+
+// The blocks of Q^T K Q of the lower triangle, by columns.
+class CoarseBlocks {
+ public:
+  explicit CoarseBlocks(std::size_t groups) : column_(groups) {}
+  CoarseBlock& at(Index row, Index col) {
+    const auto [entry, added] = column_[uz(col)].try_emplace(row);
     if (added) entry->second.setZero();
     return entry->second;
-  };
-  rest.for_each_block([&](Index i, Index j, const Mat3& k) {
-    const Index gi = group_[uz(i)];
-    const Index gj = group_[uz(j)];
-    if (gi < gj || gj < 0) return;
-    CoarseBlock& b = block(gi, gj);
-    for (int p = 0; p < 4; ++p) {
-      for (int q = 0; q < 4; ++q) {
-        const double weight =
-            static_cast<double>(shape_[uz(i)][p]) * static_cast<double>(shape_[uz(j)][q]);
-        b.block<3, 3>(3 * p, 3 * q) += weight * k;
+  }
+  std::vector<std::map<Index, CoarseBlock>>&& take() { return std::move(column_); }
+
+ private:
+  std::vector<std::map<Index, CoarseBlock>> column_;
+};
+
+// What a form's nodes in one group add up to: one value of type T for each of the four motions.
+template <class T>
+struct Shares {
+  Index group;
+  std::array<T, 4> motion;
+};
+
+// Sums value_a times the motions of the nodes a in the same group.
+template <class T, class Values>
+void sum_by_group(std::span<const Index> nodes, const Values& values,
+                  const std::vector<Index>& group, const std::vector<Eigen::Vector4f>& shape,
+                  const T& zero, std::vector<Shares<T>>& sums) {
+  sums.clear();
+  for (std::size_t a = 0; a < nodes.size(); ++a) {
+    const Index g = group[uz(nodes[a])];
+    if (g < 0) continue;
+    auto found = std::find_if(sums.begin(), sums.end(),
+                              [&](const Shares<T>& share) { return share.group == g; });
+    if (found == sums.end()) {
+      sums.push_back({g, {zero, zero, zero, zero}});
+      found = sums.end() - 1;
+    }
+    for (int p = 0; p < 4; ++p)
+      found->motion[static_cast<std::size_t>(p)] +=
+          static_cast<double>(shape[uz(nodes[a])][p]) * values[a];
+  }
+}
+
+// Calls f(block, row shares, column shares) for all pairs of groups of a form.
+template <class T, class F>
+void for_each_group_pair(const std::vector<Shares<T>>& sums, CoarseBlocks& blocks, const F& f) {
+  for (const Shares<T>& row : sums) {
+    for (const Shares<T>& col : sums) {
+      if (row.group < col.group) continue;
+      CoarseBlock& block = blocks.at(row.group, col.group);
+      for (int p = 0; p < 4; ++p) {
+        for (int q = 0; q < 4; ++q) {
+          block.block<3, 3>(3 * p, 3 * q) +=
+              f(row.motion[static_cast<std::size_t>(p)], col.motion[static_cast<std::size_t>(q)]);
+        }
       }
     }
-  });
-  using Row = Eigen::Matrix<double, coarse_size, 1>;
-  std::map<Index, Row> rate;  // of the cell's volume, for the motions of a group
-  rest.for_each_cell(
-      [&](double stiffness, std::span<const Index> nodes, std::span<const Float4> gradients) {
-        rate.clear();
-        for (std::size_t k = 0; k < nodes.size(); ++k) {
-          const Index g = group_[uz(nodes[k])];
-          if (g < 0) continue;
-          const auto [entry, added] = rate.try_emplace(g);
-          if (added) entry->second.setZero();
-          for (int p = 0; p < 4; ++p) {
-            entry->second.segment<3>(3 * p) +=
-                static_cast<double>(shape_[uz(nodes[k])][p]) * gradients[k].vec3();
-          }
-        }
-        for (const auto& [gj, rj] : rate) {
-          for (const auto& [gi, ri] : rate) {
-            if (gi >= gj) block(gi, gj).noalias() += stiffness * ri * rj.transpose();
-          }
-        }
+  }
+}
+
+}  // namespace
+
+void TwoLevel::factor(const Objective& rest, double time) {
+  CoarseBlocks blocks(centre_.size());
+  diagonal_.assign(group_.size(), Mat3::Zero());
+  std::vector<Shares<Vec3>> of_cell;
+  std::vector<Shares<double>> of_element;
+  for_each_rest_form(
+      rest, time,
+      [&](const CellForm& cell) {
+        const auto block = [&](const Vec3& g, const Vec3& h) {
+          return Mat3(cell.shear * (g.dot(h) * Mat3::Identity() + h * g.transpose()) +
+                      cell.volume * g * h.transpose());
+        };
+        for (std::size_t a = 0; a < cell.nodes.size(); ++a)
+          diagonal_[uz(cell.nodes[a])] += block(cell.gradients[a], cell.gradients[a]);
+        sum_by_group(cell.nodes, cell.gradients, group_, shape_, Vec3(Vec3::Zero()), of_cell);
+        for_each_group_pair(of_cell, blocks, block);
+      },
+      [&](std::span<const Index> nodes, std::span<const double> weights, const Mat3& block,
+          bool of_material) {
+        for (std::size_t a = 0; of_material && a < nodes.size(); ++a)
+          diagonal_[uz(nodes[a])] += weights[a] * weights[a] * block;
+        sum_by_group(nodes, weights, group_, shape_, 0.0, of_element);
+        for_each_group_pair(of_element, blocks,
+                            [&](double v, double w) { return Mat3(v * w * block); });
       });
   for (Index g = 0; g < group_count(); ++g) {
-    CoarseBlock& b = block(g, g);
+    CoarseBlock& b = blocks.at(g, g);
     const double mean = b.trace() / coarse_size;
     for (int p = 0; p < coarse_size; ++p) {
       b(p, p) = b(p, p) > 0.0 ? b(p, p) + regularisation * mean : 1.0;
     }
   }
-  factor_ = std::make_unique<BlockCholesky>(std::move(column));
+  factor_ = std::make_unique<BlockCholesky>(blocks.take());
+  inverse_.assign(group_.size(), Mat3::Zero());
+  for (std::size_t i = 0; i < group_.size(); ++i)
+    if (group_[i] >= 0) inverse_[i] = definite(diagonal_[i]).inverse();
 }
 
-void TwoLevel::turn(const Field& x) {
+void TwoLevel::turn(const Field& x, const std::vector<Mat3>& outer) {
   parallel_for(group_count(), [&](Index g) {
     Vec3 middle = Vec3::Zero();
     for (auto k = uz(start_[uz(g)]); k < uz(start_[uz(g) + 1]); ++k) middle += x[uz(nodes_[k])];
@@ -150,11 +215,21 @@ void TwoLevel::turn(const Field& x) {
       const auto i = uz(nodes_[k]);
       moment += (x[i] - middle) * (model_.rest_position[i] - centre_[uz(g)]).transpose();
     }
-    rotation_[uz(g)] = nearest_rotation(moment);
+    const Mat3 R = nearest_rotation(moment);
+    rotation_[uz(g)] = R;
+    for (auto k = uz(start_[uz(g)]); k < uz(start_[uz(g) + 1]); ++k) {
+      const auto i = uz(nodes_[k]);
+      if (outer.empty() || outer[i].isZero(0.0)) {
+        inverse_now_[i] = Block3(Mat3(R * inverse_[i] * R.transpose()));
+      } else {
+        const Mat3 sum = R * diagonal_[i] * R.transpose() + outer[i];
+        inverse_now_[i] = Block3(Mat3(definite(sum).inverse()));
+      }
+    }
   });
 }
 
-double TwoLevel::apply(const TangentMatrix& matrix, const Field4& r, Field4& z) {
+double TwoLevel::apply(const Field4& r, Field4& z) {
   parallel_for(group_count(), [&](Index g) {
     const Block3 back(Mat3(rotation_[uz(g)].transpose()));
     Float4 sum[4];
@@ -177,7 +252,7 @@ double TwoLevel::apply(const TangentMatrix& matrix, const Field4& r, Field4& z) 
     }
     for (auto k = uz(start_[uz(g)]); k < uz(start_[uz(g) + 1]); ++k) {
       const auto i = uz(nodes_[k]);
-      Float4 sum = matrix.inverse_diagonal()[i] * r[i];
+      Float4 sum = inverse_now_[i] * r[i];
       for (int p = 0; p < 4; ++p) sum += shape_[i][p] * motion[p];
       z[i] = sum;
     }

@@ -15,7 +15,7 @@
 #include "sinew/sim/stepping.h"
 #include "sinew/solver/linear_solver.h"
 #include "sinew/solver/stable_step.h"
-#include "sinew/solver/tangent_matrix.h"
+#include "sinew/solver/tangent_operator.h"
 #include "sinew/solver/verlet.h"
 
 namespace sinew::study {
@@ -295,7 +295,7 @@ std::optional<Timing> BenchSubject::linear(const BenchCase& what, const TimerOpt
     row.work = row.items * iteration_work(m);
     return time;
   }
-  TangentMatrix matrix(m);
+  TangentOperator matrix(m, std::make_shared<PackedLayout>(m));
   matrix.assemble(objective, x, 0.0, tets);
   if (what.kernel == Kernel::assembly) {
     return measure(

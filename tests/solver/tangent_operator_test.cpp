@@ -1,4 +1,4 @@
-#include "sinew/solver/tangent_matrix.h"
+#include "sinew/solver/tangent_operator.h"
 
 #include <gtest/gtest.h>
 
@@ -11,12 +11,12 @@ namespace {
 
 // The product with the assembled matrix against the one without (tests/forces/terms_test.cpp holds
 // that against the terms one by one).
-TEST(TangentMatrix, HasEveryTerm) {
+TEST(TangentOperator, HasEveryTerm) {
   const test::Everything e;
   const std::vector<Vec3> u = e.free_field();
   std::vector<Vec3> plain(u.size()), product(u.size());
   test::tangent_times(e.at(e.x), 1.0, 0.0, u, Tangent::full, plain);
-  TangentMatrix matrix(e.model);
+  TangentOperator matrix(e.model, std::make_shared<PackedLayout>(e.model));
   matrix.assemble({e.model, e.controls}, e.x, e.time, compute_tet_state(e.model, e.x));
   Field4 u4(u.size()), out4(u.size());
   for (std::size_t i = 0; i < u.size(); ++i) u4[i] = Float4(u[i]);
