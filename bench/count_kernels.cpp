@@ -110,9 +110,9 @@ int main() {
 
   TangentOperator matrix(m, std::make_shared<PackedLayout>(m));
   const Objective objective{.model = m, .controls = initial_controls(m), .inertia = 3600.0};
-  at = compute_tet_state(m, bar.state.position, std::move(at));
+  ForceEvaluator forces(m, Precision::single);
   count_tets("tangent_assembly", counted_tangent_assembly,
-             [&] { matrix.assemble(objective, bar.state.position, 0.0, at); });
+             [&] { matrix.assemble(objective, bar.state.position, 0.0, forces); });
   Field4 u(m.rest_position.size()), out(u);
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = Float4(m.rest_position[i]);
   count_tets("tangent_product", counted_tangent_product, [&] { matrix.times(u, out); });

@@ -117,8 +117,8 @@ void ConjugateGradients(benchmark::State& state) {
   LinearSolver solver(model);
   const Objective objective{
       .model = model, .controls = initial_controls(model), .inertia = step ? 3600.0 : 0.0};
-  solver.assemble(objective, model.rest_position, 0.0,
-                  compute_tet_state(model, model.rest_position));
+  ForceEvaluator forces(model, Precision::single);
+  solver.assemble(objective, model.rest_position, 0.0, forces);
   const Field weight = outer_forces(model, initial_controls(model), initial_state(model));
   Field p;
   int products = 0;

@@ -95,16 +95,20 @@ struct TurnBack {
 };
 
 void displacements(const Frame& frame, std::span<const Index> nodes, const Model& model,
-                   const State& state, float* u, float* v) {
+                   const Vec3* x, float* u) {
   const TurnBack turn_back(frame.rotation);
   const Three rest_centre = load(frame.rest_centre);
   for (std::size_t k = 0; k < nodes.size(); ++k) {
     if (nodes[k] < 0) continue;
     const auto i = uz(nodes[k]);
-    const Three displacement = turn_back(state.position[i], frame.centre);
-    store(displacement - (load(model.rest_position[i]) - rest_centre), u + 4 * k);
-    if (v != nullptr) store(turn_back(state.half_velocity[i], frame.velocity), v + 4 * k);
+    store(turn_back(x[i], frame.centre) - (load(model.rest_position[i]) - rest_centre), u + 4 * k);
   }
+}
+
+void velocities(const Frame& frame, std::span<const Index> nodes, const Vec3* w, float* v) {
+  const TurnBack turn_back(frame.rotation);
+  for (std::size_t k = 0; k < nodes.size(); ++k)
+    if (nodes[k] >= 0) store(turn_back(w[uz(nodes[k])], frame.velocity), v + 4 * k);
 }
 
 // m (g - drag w) of a free node; the power of the drag is added to `power`.
@@ -169,13 +173,19 @@ HWY_AFTER_NAMESPACE();
 namespace sinew {
 
 HWY_EXPORT(displacements);
+HWY_EXPORT(velocities);
 HWY_EXPORT(finish_range);
 HWY_EXPORT(finish_nodes);
 HWY_EXPORT(move);
 
 void frame_displacements(const Frame& frame, std::span<const Index> nodes, const Model& model,
-                         const State& state, float* u, float* v) {
-  HWY_DYNAMIC_DISPATCH(displacements)(frame, nodes, model, state, u, v);
+                         std::span<const Vec3> x, float* u) {
+  HWY_DYNAMIC_DISPATCH(displacements)(frame, nodes, model, x.data(), u);
+}
+
+void frame_velocities(const Frame& frame, std::span<const Index> nodes, std::span<const Vec3> w,
+                      float* v) {
+  HWY_DYNAMIC_DISPATCH(velocities)(frame, nodes, w.data(), v);
 }
 
 double add_gravity_and_drag(const Model& model, const Vec3& gravity, const std::vector<Vec3>& w,

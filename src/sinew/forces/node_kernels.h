@@ -17,10 +17,12 @@ struct Frame {
   Vec3 rest_centre = Vec3::Zero();   // C [m]
   Vec3 velocity = Vec3::Zero();      // of the centre [m/s]
 };
-// u and, if v is given, R^T (v - the centre's velocity) of the nodes: four floats each, the fourth
-// zero. Entries of a node of -1 are not changed.
+// u of the nodes: four floats each, the fourth zero. Entries of a node of -1 are not changed.
 void frame_displacements(const Frame& frame, std::span<const Index> nodes, const Model& model,
-                         const State& state, float* u, float* v);
+                         std::span<const Vec3> x, float* u);
+// R^T (w - the centre's velocity) of the nodes, likewise.
+void frame_velocities(const Frame& frame, std::span<const Index> nodes, std::span<const Vec3> w,
+                      float* v);
 
 // force = given force plus m (g - drag w) on the free nodes [N]; returns the power of the drag [W].
 // The given forces are those in `force` of a range of nodes, ...

@@ -11,11 +11,6 @@
 namespace sinew {
 namespace {
 
-void copy_four(const std::vector<float>& from, Index i, std::vector<float>& to, std::size_t k) {
-  std::copy_n(from.begin() + 4 * static_cast<std::ptrdiff_t>(i), 4,
-              to.begin() + 4 * static_cast<std::ptrdiff_t>(k));
-}
-
 // The smallest height of a tet [m].
 double lowest_height(const std::vector<Vec3>& x, const Tet& t) {
   double widest = 0.0;
@@ -43,113 +38,61 @@ bool resolved_in_single(const Model& model) {
 }
 
 PackedForces::PackedForces(std::shared_ptr<const PackedLayout> layout)
-    : layout_(std::move(layout)),
-      frames_(layout_->frame_nodes.size()),
-      displacement_(4 * layout_->node_of.size(), 0.0f),
-      slot_displacement_(4 * layout_->slot_node.size(), 0.0f),
-      slot_force_(4 * layout_->slot_node.size(), 0.0f),
-      tet_change_(layout_->tet_id.size(), 0.0f),
-      cell_pressure_(layout_->cell_stiffness.size()) {
+    : layout_(std::move(layout)), shape_(layout_), slot_force_(4 * layout_->slot_node.size()) {
   if (layout_->one_ring_length.empty()) return;
   velocity_.assign(4 * layout_->node_of.size(), 0.0f);
   slot_velocity_.assign(4 * layout_->slot_node.size(), 0.0f);
 }
 
-void PackedForces::compute_frames(const Model& model, const State& state) {
-  const auto& x = state.position;
-  const auto& X = model.rest_position;
-  for (std::size_t b = 0; b < layout_->frame_nodes.size(); ++b) {
-    const Index i = layout_->frame_nodes[b][0];
-    Frame& frame = frames_[b];
-    frame.centre = x[uz(i)];
-    frame.rest_centre = X[uz(i)];
-    frame.velocity = state.half_velocity[uz(i)];
-    frame.rotation = layout_->rotation(model, static_cast<Index>(b), x);
-  }
-}
-
-void PackedForces::fill_slots(const Model& model, const State& state, const Patch& patch) {
-  if (patch.is_loose()) {
-    for (auto s = uz(patch.slots.begin); s < uz(patch.slots.end); ++s) {
-      const std::span<const Index> node(&layout_->node_of[uz(layout_->slot_node[s])], 1);
-      frame_displacements(Frame(), node, model, state, &slot_displacement_[4 * s],
-                          &slot_velocity_[4 * s]);
-    }
-    return;
-  }
-  for (auto s = uz(patch.slots.begin); s < uz(patch.slots.end); ++s) {
-    copy_four(displacement_, layout_->slot_node[s], slot_displacement_, s);
-    slot_force_[4 * s + 3] = 0.0f;
-  }
+void PackedForces::fill_velocities(const State& state) {
   if (velocity_.empty()) return;
-  for (auto s = uz(patch.slots.begin); s < uz(patch.slots.end); ++s) {
-    copy_four(velocity_, layout_->slot_node[s], slot_velocity_, s);
-  }
-}
-
-void PackedForces::compute_cell_pressures() {
-  parallel_blocks(static_cast<Index>(cell_pressure_.size()), [&](Index, Range cells) {
-    const FlushDenormals flush;
-    for (auto c = uz(cells.begin); c < uz(cells.end); ++c) {
-      float change = 0.0f;
-      for (auto k = uz(layout_->cell_start[c]); k < uz(layout_->cell_start[c + 1]); ++k) {
-        change += slot_force_[4 * uz(layout_->cell_slot[k]) + 3];
-      }
-      cell_pressure_[c] = layout_->cell_stiffness[c] * change;
-    }
-  });
-}
-
-std::vector<Mat3> PackedForces::rotations() const {
-  std::vector<Mat3> out;
-  for (const Frame& frame : frames_) out.push_back(frame.rotation);
-  return out;
-}
-
-double PackedForces::compute(const Model& model, const State& state) {
-  compute_frames(model, state);
-  return compute_nearby(model, state);
-}
-
-double PackedForces::compute_nearby(const Model& model, const State& state) {
   layout_->run_patches([&](Index p) {
     const FlushDenormals flush;
     const Patch& patch = layout_->patches[uz(p)];
     const auto first = uz(patch.nodes.begin);
-    frame_displacements(frame_of(patch.body),
-                        {layout_->node_of.data() + first, uz(patch.nodes.size())}, model, state,
-                        displacement_.data() + 4 * first,
-                        velocity_.empty() ? nullptr : velocity_.data() + 4 * first);
+    frame_velocities(shape_.frame_of(patch),
+                     {layout_->node_of.data() + first, uz(patch.nodes.size())}, state.half_velocity,
+                     velocity_.data() + 4 * first);
   });
   layout_->run_patches([&](Index p) {
     const FlushDenormals flush;
     const Patch& patch = layout_->patches[uz(p)];
-    fill_slots(model, state, patch);
-    packed_volumes(layout_->rings_of(patch), slot_displacement_.data() + 4 * patch.slots.begin,
-                   tet_change_.data() + patch.first_tet,
-                   slot_force_.data() + 4 * patch.slots.begin);
+    for (auto s = uz(patch.slots.begin); s < uz(patch.slots.end); ++s) {
+      const auto n = uz(layout_->slot_node[s]);
+      if (patch.is_loose()) {
+        frame_velocities(Frame(), std::span(&layout_->node_of[n], 1), state.half_velocity,
+                         &slot_velocity_[4 * s]);
+      } else {
+        std::copy_n(&velocity_[4 * n], 4, &slot_velocity_[4 * s]);
+      }
+    }
   });
-  compute_cell_pressures();
+}
+
+double PackedForces::compute(const Model& model, const State& state) {
+  shape_.find_frames(model, state.position, state.half_velocity);
+  return compute_nearby(model, state);
+}
+
+double PackedForces::compute_nearby(const Model& model, const State& state) {
+  shape_.compute(model, state.position, slot_force_);
+  fill_velocities(state);
   std::vector<float> smallest(layout_->patches.size(), 1.0f);
   std::vector<double> heat(layout_->patches.size(), 0.0);
   layout_->run_patches([&](Index p) {
     const FlushDenormals flush;
     const Patch& patch = layout_->patches[uz(p)];
-    for (auto s = uz(patch.slots.begin); s < uz(patch.slots.end); ++s) {
-      if (layout_->slot_cell[s] >= 0)
-        slot_displacement_[4 * s + 3] = cell_pressure_[uz(layout_->slot_cell[s])];
-    }
     float* force = slot_force_.data() + 4 * patch.slots.begin;
     std::fill_n(force, 4 * patch.slots.size(), 0.0f);
-    const float* u = slot_displacement_.data() + 4 * patch.slots.begin;
+    const float* u = shape_.slots_of(patch);
     smallest[uz(p)] =
-        packed_tet_forces(layout_->rings_of(patch), u, tet_change_.data() + patch.first_tet, force);
+        packed_tet_forces(layout_->rings_of(patch), u, shape_.tet_changes_of(patch), force);
     packed_edge_forces(layout_->edge_cells_of(patch), u, force);
     if (!velocity_.empty()) {
       heat[uz(p)] = packed_spring_forces(layout_->one_rings_of(patch), u,
                                          slot_velocity_.data() + 4 * patch.slots.begin, force);
     }
-    if (patch.is_loose()) layout_->turn_loose_forces(patch, rotations(), force);
+    if (patch.is_loose()) layout_->turn_loose_forces(patch, shape_.rotations(), force);
   });
   low_tets_.clear();
   for (std::size_t p = 0; p < layout_->patches.size(); ++p) {
@@ -167,7 +110,8 @@ void PackedForces::find_low_tets(const Patch& patch) {
     for (int k = 0; k < rings.length[g]; ++k) {
       for (Index lane = 0; lane < packed_lanes; ++lane, ++tet) {
         if (layout_->tet_id[tet] < 0) continue;
-        if (!(1.0f + tet_change_[tet] * inverse_volume[lane] >= static_cast<float>(low_ratio))) {
+        if (!(1.0f + shape_.tet_change(tet) * inverse_volume[lane] >=
+              static_cast<float>(low_ratio))) {
           low_tets_.push_back(layout_->tet_id[tet]);
         }
       }
@@ -178,7 +122,7 @@ void PackedForces::find_low_tets(const Patch& patch) {
 
 void PackedForces::gather(const Patch& patch, float* force) const {
   const FlushDenormals flush;
-  packed_gather(frame_of(patch.body), layout_->slots_of(patch, slot_force_.data()),
+  packed_gather(shape_.frame_of(patch), layout_->slots_of(patch, slot_force_.data()),
                 patch.nodes.size(), force);
 }
 
@@ -192,8 +136,7 @@ void PackedForces::gather(std::span<Vec3> force) const {
 
 std::size_t PackedForces::bytes() const {
   const auto of = [](const auto&... arrays) { return ((arrays.size() * sizeof(arrays[0])) + ...); };
-  return layout_->bytes() + of(frames_, displacement_, velocity_, slot_displacement_,
-                               slot_velocity_, slot_force_, tet_change_, cell_pressure_);
+  return layout_->bytes() + shape_.bytes() + of(velocity_, slot_velocity_, slot_force_);
 }
 
 }  // namespace sinew

@@ -19,6 +19,7 @@
 
 #include "sinew/base/parallel.h"
 #include "sinew/forces/packed_layout.h"
+#include "sinew/forces/packed_shape.h"
 #include "sinew/model/model.h"
 #include "sinew/model/state.h"
 
@@ -73,25 +74,16 @@ class PackedForces {
  private:
   using Patch = PackedLayout::Patch;
 
-  Frame frame_of(Index body) const { return body < 0 ? Frame() : frames_[uz(body)]; }
-  void compute_frames(const Model& model, const State& state);
-  void fill_slots(const Model& model, const State& state, const Patch& patch);
-  void compute_cell_pressures();
-  std::vector<Mat3> rotations() const;  // (bodies)
+  void fill_velocities(const State& state);
   void find_low_tets(const Patch& patch);
   void gather(const Patch& patch, float* force) const;
 
   std::shared_ptr<const PackedLayout> layout_;
-
-  // Scratch: four floats per node or slot.
-  std::vector<Frame> frames_;             // (bodies)
-  std::vector<float> displacement_;       // (packed nodes)
-  std::vector<float> velocity_;           // (packed nodes) empty if there are no springs
-  std::vector<float> slot_displacement_;  // (slots) the fourth: pressure of its cell times W
-  std::vector<float> slot_velocity_;      // (slots) empty if there are no springs
-  std::vector<float> slot_force_;     // (slots) the fourth: volume change of its cell over W [m3]
-  std::vector<float> tet_change_;     // v - V [m3] (as tet_id_)
-  std::vector<float> cell_pressure_;  // (cells)
+  PackedShape shape_;
+  // Scratch: four floats per node or slot; empty if there are no springs.
+  std::vector<float> velocity_;       // (packed nodes)
+  std::vector<float> slot_velocity_;  // (slots)
+  std::vector<float> slot_force_;
   std::vector<Index> low_tets_;
 };
 

@@ -24,6 +24,7 @@ void put_columns(float* to, const Mat3& m) {
 
 PackedTangent::PackedTangent(std::shared_ptr<const PackedLayout> layout)
     : layout_(std::move(layout)),
+      shape_(layout_),
       rotation_(layout_->frame_nodes.size(), Mat3::Identity()),
       ring_tangent_(lanes * uz(ring_tangent_head_fields) * layout_->ring_length.size() +
                     uz(ring_tangent_tet_fields) * layout_->tet_id.size()),
@@ -37,8 +38,8 @@ PackedTangent::PackedTangent(std::shared_ptr<const PackedLayout> layout)
       tet_rate_(layout_->tet_id.size()),
       cell_change_(layout_->cell_stiffness.size()) {}
 
-const float* PackedTangent::ring_tangent_of(const Patch& patch) const {
-  return ring_tangent_.data() + lanes * uz(ring_tangent_head_fields * patch.rings.groups.begin) +
+std::size_t PackedTangent::ring_tangent_of(const Patch& patch) const {
+  return lanes * uz(ring_tangent_head_fields * patch.rings.groups.begin) +
          uz(ring_tangent_tet_fields * patch.first_tet);
 }
 
@@ -47,8 +48,8 @@ Mat3 PackedTangent::frame_of(const Patch& patch) const {
 }
 
 void PackedTangent::linearise(const Model& model, const Point& point) {
-  for (std::size_t b = 0; b < rotation_.size(); ++b)
-    rotation_[b] = layout_->rotation(model, static_cast<Index>(b), point.x);
+  shape_.find_frames(model, point.x);
+  rotation_ = shape_.rotations();
   for (std::size_t c = 0; c < cell_stiffness_.size(); ++c) {
     double stiffness = model.cell_bulk[c] / model.cell_volume[c];
     if (!point.cell_stiffness.empty()) stiffness += point.cell_stiffness[c];
@@ -56,10 +57,21 @@ void PackedTangent::linearise(const Model& model, const Point& point) {
     cell_stiffness_[c] = static_cast<float>(stiffness * weight * weight);
   }
   viscous_rate_ = static_cast<float>(point.rate);
+  if (point.tets == nullptr) shape_.compute(model, point.x, slot_force_);
   layout_->run_patches([&](Index p) {
     const Patch& patch = layout_->patches[uz(p)];
-    linearise_rings(model, point, patch);
-    linearise_edge_cells(model, point, patch);
+    if (point.tets != nullptr) {
+      linearise_rings(model, point, patch);
+      linearise_edge_cells(model, point, patch);
+    } else {
+      const FlushDenormals flush;
+      fill_ring_tangents(layout_->rings_of(patch), shape_.slots_of(patch),
+                         shape_.tet_changes_of(patch),
+                         ring_tangent_.data() + ring_tangent_of(patch));
+      fill_edge_tangents(layout_->edge_cells_of(patch), shape_.slots_of(patch),
+                         edge_tangent_.data() + edge_tangent_fields * patch.first_cell);
+    }
+    linearise_viscous_cells(model, point, patch);
     linearise_springs(model, point, patch);
   });
 }
@@ -71,7 +83,7 @@ void PackedTangent::linearise_rings(const Model& model, const Point& point, cons
     const Index slot = patch.slots.begin + corner / 4;
     return point.x[uz(layout_->node_of[uz(layout_->slot_node[uz(slot)])])];
   };
-  float* to = const_cast<float*>(ring_tangent_of(patch));
+  float* to = ring_tangent_.data() + ring_tangent_of(patch);
   const std::uint16_t* corner = rings.corner;
   const float* data = rings.data;
   const Index* tets = layout_->tet_id.data() + patch.first_tet;
@@ -85,11 +97,11 @@ void PackedTangent::linearise_rings(const Model& model, const Point& point, cons
       of += uz(ring_tangent_head_fields) * lanes;
       for (std::size_t k = 0; k < length; ++k) {
         const auto t = uz(tets[k * lanes + lane]);
-        double pressure = point.tets.pressure[t];
+        double pressure = point.tets->pressure[t];
         if (!point.tet_pressure.empty()) pressure += point.tet_pressure[t];
         put(of, back * (at(corner[(3 + k) * lanes + lane]) - origin));
         of[3 * lanes] = static_cast<float>(pressure / -6.0);
-        of[4 * lanes] = static_cast<float>(tet_volume_stiffness(model, t, point.tets.volume[t]) /
+        of[4 * lanes] = static_cast<float>(tet_volume_stiffness(model, t, point.tets->volume[t]) /
                                            model.rest_volume[t]);
         of[5 * lanes] = data[(uz(ring_head_fields + 4) + k * uz(ring_tet_fields)) * lanes + lane];
         of += uz(ring_tangent_tet_fields) * lanes;
@@ -110,14 +122,19 @@ void PackedTangent::linearise_edge_cells(const Model& model, const Point& point,
   for (std::size_t k = uz(patch.first_cell); k < uz(patch.first_cell) + cells; ++k) {
     if (ids[k] < 0 || ids[k] >= model.edge_cells.count()) continue;  // bare edges are linear
     const auto e = uz(ids[k]);
-    const Mat3& F = point.tets.edges.deformation[e];
+    const Mat3& F = point.tets->edges.deformation[e];
     float* to = &edge_tangent_[k / lanes * uz(edge_tangent_fields) * lanes + k % lanes];
     put_columns(to, back * F);
     const double J = F.col(0).dot(F.col(1).cross(F.col(2)));
     to[9 * lanes] = static_cast<float>(model.edge_cells.volume[e] *
                                        edge_pressure(J, model.edge_shear[e], model.edge_bulk[e]));
   }
+}
+
+void PackedTangent::linearise_viscous_cells(const Model& model, const Point& point,
+                                            const Patch& patch) {
   if (point.rate == 0.0) return;
+  const Mat3 back = frame_of(patch).transpose();
   const auto viscous = lanes * uz(patch.viscous_cells.groups.size());
   for (std::size_t k = uz(patch.first_viscous); k < uz(patch.first_viscous) + viscous; ++k) {
     const Index id = layout_->viscous_cells.id[k];
@@ -174,7 +191,7 @@ void PackedTangent::compute(const Field4& u) {
       std::copy_n(&own.lanes[0], 4, slot_u + 4 * s);
       force[4 * s + 3] = 0.0f;
     }
-    tangent_volumes(layout.rings_of(patch), ring_tangent_of(patch), slot_u,
+    tangent_volumes(layout.rings_of(patch), ring_tangent_.data() + ring_tangent_of(patch), slot_u,
                     tet_rate_.data() + patch.first_tet, force);
   });
   parallel_blocks(static_cast<Index>(cell_change_.size()), [&](Index, Range cells) {
@@ -196,7 +213,7 @@ void PackedTangent::compute(const Field4& u) {
       slot_u[4 * s + 3] = cell >= 0 ? cell_change_[uz(cell)] : 0.0f;
     }
     std::fill_n(force, 4 * patch.slots.size(), 0.0f);
-    tangent_rings(layout.rings_of(patch), ring_tangent_of(patch), slot_u,
+    tangent_rings(layout.rings_of(patch), ring_tangent_.data() + ring_tangent_of(patch), slot_u,
                   tet_rate_.data() + patch.first_tet, force);
     tangent_edge_cells(layout.edge_cells_of(patch),
                        edge_tangent_.data() + edge_tangent_fields * patch.first_cell, slot_u,

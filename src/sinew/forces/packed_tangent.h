@@ -11,6 +11,7 @@
 
 #include "sinew/base/float4.h"
 #include "sinew/forces/packed_layout.h"
+#include "sinew/forces/packed_shape.h"
 #include "sinew/forces/volume.h"
 
 namespace sinew {
@@ -21,12 +22,14 @@ class PackedTangent {
 
   struct Point {
     std::span<const Vec3> x;  // [m] (nodes)
-    const TetState& tets;     // at x
+    // The tets at x, in double precision. Null: they are computed in single precision, several
+    // times as fast; only for the layout's model, if resolved_in_single().
+    const TetState* tets = nullptr;
     // Dashpots and viscosity count `rate` [1/s] times, with their directions at `lagged` [m].
     double rate = 0.0;
     std::span<const Vec3> lagged = {};
     // Of limits on cells, in addition: pressure of each tet [Pa] (tets), d2W/dV_c2 of each cell
-    // [Pa/m3] (cells); empty: none.
+    // [Pa/m3] (cells); empty: none. Not without `tets`.
     std::span<const double> tet_pressure = {};
     std::span<const double> cell_stiffness = {};
   };
@@ -56,12 +59,14 @@ class PackedTangent {
   void compute(const Field4& u);
   void gather(const Patch& patch, float* force) const;
   void linearise_rings(const Model& model, const Point& point, const Patch& patch);
+  void linearise_viscous_cells(const Model& model, const Point& point, const Patch& patch);
   void linearise_edge_cells(const Model& model, const Point& point, const Patch& patch);
   void linearise_springs(const Model& model, const Point& point, const Patch& patch);
-  Mat3 frame_of(const Patch& patch) const;  // its rotation
-  const float* ring_tangent_of(const Patch& patch) const;
+  Mat3 frame_of(const Patch& patch) const;                // its rotation
+  std::size_t ring_tangent_of(const Patch& patch) const;  // its place in ring_tangent_
 
   std::shared_ptr<const PackedLayout> layout_;
+  PackedShape shape_;
   std::vector<Mat3> rotation_;       // of the bodies' frames (bodies)
   std::vector<float> ring_tangent_;  // tangent_kernels.h
   std::vector<float> edge_tangent_;

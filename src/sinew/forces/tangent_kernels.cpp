@@ -1,5 +1,9 @@
 #include "sinew/forces/tangent_kernels.h"
 
+#include <iterator>
+
+#include "sinew/forces/volume_law.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "sinew/forces/tangent_kernels.cpp"
 #include <hwy/foreach_target.h>
@@ -11,6 +15,82 @@ HWY_BEFORE_NAMESPACE();
 namespace sinew {
 namespace HWY_NAMESPACE {
 namespace {
+
+void store(const Sixteen3& a, float* to) {
+  store(a.x, to);
+  store(a.y, to + packed_lanes);
+  store(a.z, to + 2 * packed_lanes);
+}
+
+// The pressure as in packed_kernels.cpp, and its derivative kappa + guard'; volume_law.h.
+void ring_tangents(const PackedGroups& rings, const float* u, const float* change, float* tangent) {
+  const std::uint16_t* corner = rings.corner;
+  const float* data = rings.data;
+  const Sixteen one = set(1.0f);
+  for (Index g = 0; g < rings.groups; ++g) {
+    const std::uint16_t* p = corner + 2 * packed_lanes;
+    const Rows<parts> ra = load_rows(u, corner);
+    const Rows<parts> rb = load_rows(u, corner + packed_lanes);
+    const Rows<parts> rp = load_rows(u, p);
+    corner += (3 + rings.length[g]) * packed_lanes;
+    store(load3(data) + (rb.v - ra.v), tangent);
+    store(load3(data + 3 * packed_lanes) + (rp.v - ra.v), tangent + 3 * packed_lanes);
+    tangent += ring_tangent_head_fields * packed_lanes;
+    const Sixteen mu6 = load(data + 6 * packed_lanes);
+    const Sixteen kappa = load(data + 7 * packed_lanes);
+    const Sixteen guard = set(static_cast<float>(guard_factor)) * load(data + 8 * packed_lanes);
+    data += ring_head_fields * packed_lanes;
+    const Sixteen of_axis = ra.w + rb.w;
+    Sixteen pressure_p = rp.w;
+    for (int k = 0; k < rings.length[g]; ++k) {
+      p += packed_lanes;
+      const Rows<parts> rq = load_rows(u, p);
+      const Sixteen inverse_volume = load(data + 3 * packed_lanes);
+      const Sixteen share = load(data + 4 * packed_lanes);
+      const Sixteen strain = load(change) * inverse_volume;
+      change += packed_lanes;
+      const Sixteen ratio = one + strain;
+      const Sixteen lack = max(zero(), set(static_cast<float>(guard_threshold)) - ratio);
+      const Sixteen below = min(ratio, zero());
+      const Sixteen pressure = kappa * strain + share * (of_axis + pressure_p + rq.w) -
+                               guard * (lack * lack - below * below);
+      store(load3(data) + (rq.v - ra.v), tangent);
+      store(set(-1.0f / 6.0f) * pressure + mu6, tangent + 3 * packed_lanes);
+      store((kappa + set(2.0f) * guard * (lack + below)) * inverse_volume,
+            tangent + 4 * packed_lanes);
+      store(share, tangent + 5 * packed_lanes);
+      tangent += ring_tangent_tet_fields * packed_lanes;
+      data += ring_tet_fields * packed_lanes;
+      pressure_p = rq.w;
+    }
+  }
+}
+
+void edge_tangents(const PackedGroups& edge_cells, const float* u, float* tangent) {
+  const std::uint16_t* corner = edge_cells.corner;
+  const float* data = edge_cells.data;
+  const One one = set<1>(1.0f);
+  for (Index g = 0; g < edge_cells.groups; ++g) {
+    const int nodes = edge_cells.length[g];
+    const float* gradients = data + edge_cell_head_fields * packed_lanes;
+    for (std::size_t p = 0; p < parts; ++p) {
+      const float* head = data + p * lanes;
+      const auto [X, Y, Z] = change_of_cells(corner, gradients, nodes, p, u).gradient;
+      const One3 cX = cross(Y, Z);
+      const One3 cY = cross(Z, X);
+      const One3 cZ = cross(X, Y);
+      const One grown = X.x + Y.y + Z.z + (cX.x + cY.y + cZ.z) + dot(X, cX);  // J - 1
+      const One fields[edge_tangent_fields] = {
+          X.x + one, X.y, X.z, Y.x,       Y.y + one,
+          Y.z,       Z.x, Z.y, Z.z + one, load<1>(head + packed_lanes) * grown - load<1>(head)};
+      for (std::size_t f = 0; f < std::size(fields); ++f)
+        hn::StoreU(fields[f].part[0], Lanes(), tangent + f * packed_lanes + p * lanes);
+    }
+    tangent += edge_tangent_fields * packed_lanes;
+    corner += nodes * packed_lanes;
+    data = gradients + (nodes - 1) * edge_cell_node_fields * packed_lanes;
+  }
+}
 
 // With e_1 to axis[1], e_p and e_q to ring[k] and ring[k + 1], u likewise from axis[0]:
 //   6 v = (e_1 x e_p) . e_q,   6 dv = c_p . e_q + C_p . u_q,
@@ -218,11 +298,22 @@ HWY_AFTER_NAMESPACE();
 #if HWY_ONCE
 namespace sinew {
 
+HWY_EXPORT(ring_tangents);
+HWY_EXPORT(edge_tangents);
 HWY_EXPORT(volumes);
 HWY_EXPORT(ring_changes);
 HWY_EXPORT(edge_changes);
 HWY_EXPORT(viscous_changes);
 HWY_EXPORT(spring_changes);
+
+void fill_ring_tangents(const PackedGroups& rings, const float* u, const float* change,
+                        float* tangent) {
+  HWY_DYNAMIC_DISPATCH(ring_tangents)(rings, u, change, tangent);
+}
+
+void fill_edge_tangents(const PackedGroups& edge_cells, const float* u, float* tangent) {
+  HWY_DYNAMIC_DISPATCH(edge_tangents)(edge_cells, u, tangent);
+}
 
 void tangent_volumes(const PackedGroups& rings, const float* tangent, const float* u, float* rate,
                      float* force) {

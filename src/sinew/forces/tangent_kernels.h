@@ -1,5 +1,6 @@
 // The loops of PackedTangent, over the groups of packed_kernels.h: the first-order change of the
-// forces if the nodes move by u (four floats per slot), minus the tangent times u. Every
+// forces if the nodes move by u (four floats per slot), minus the tangent times u, is added to
+// `force`. Every
 // instruction set gives the same bits.
 #pragma once
 
@@ -20,6 +21,12 @@ inline constexpr Index edge_tangent_fields = 10;
 inline constexpr Index viscous_tangent_fields = 9;
 // The spring's block by its columns' lower parts: xx yx zx yy zy zz [N/m].
 inline constexpr Index spring_tangent_fields = 6;
+
+// The data of rings and edge cells at a shape (packed_shape.h): u with the cells' pressures, and
+// the tets' changes.
+void fill_ring_tangents(const PackedGroups& rings, const float* u, const float* change,
+                        float* tangent);
+void fill_edge_tangents(const PackedGroups& edge_cells, const float* u, float* tangent);
 
 // rate = the change of every tet's volume; share times rate is added to the fourth float of the
 // slots of all four corners in `force`.

@@ -39,10 +39,10 @@ bool LinearSolver::is_factored(const Objective& objective) const {
 }
 
 void LinearSolver::assemble(const Objective& objective, const Field& x, double time,
-                            const TetState& tets) {
+                            ForceEvaluator& forces) {
   factor(objective, time);
-  if (objective.constraints != nullptr) objective.constraints->linearise(x, tets);
-  tangent_.assemble(objective, x, time, tets);
+  if (objective.constraints != nullptr) objective.constraints->linearise(x, forces.tets(x));
+  tangent_.assemble(objective, x, time, forces);
   preconditioner_.turn(x, tangent_.outer_diagonal());
 }
 

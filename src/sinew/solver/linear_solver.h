@@ -21,8 +21,9 @@ class LinearSolver {
   void factor(const Objective& objective, double time);
 
   // Takes the tangent K of the objective at positions x, and factors the preconditioner if
-  // necessary. `tets` are those at x.
-  void assemble(const Objective& objective, const Field& x, double time, const TetState& tets);
+  // necessary. `forces` are
+  // those of objective.model.
+  void assemble(const Objective& objective, const Field& x, double time, ForceEvaluator& forces);
 
   // An approximate solution p of K p = r, 0 on nodes with prescribed motion. Stops at |K p - r| <=
   // forcing |r|, after `most` products, after the product during which the deadline passes or

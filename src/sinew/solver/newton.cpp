@@ -232,7 +232,7 @@ NewtonReport newton_steps(const Objective& objective, LinearSolver& linear,
     report.ran_out = report.newton > 0 && passed(deadline);
     if (report.ran_out) return report;
     const double forcing = std::clamp(std::sqrt(report.residual), 1e-4, 0.3);
-    linear.assemble(objective, state.position, state.time, forces.tets(state.position));
+    linear.assemble(objective, state.position, state.time, forces);
     report.products += linear.solve(f.free, forcing, most_products, deadline, p, options.stop);
     ++report.newton;
     report.stopped = options.stop != nullptr && options.stop->load();

@@ -91,7 +91,7 @@ int StaticSolver::solve_tangent(const Configuration& at, const Field& rhs, doubl
   int products = 0;
   const Field x(at.x.begin(), at.x.end());
   const TetState& tets = forces_.tets(x);
-  linear_.assemble(Objective{model_, at.controls}, x, at.time, tets);
+  linear_.assemble(Objective{model_, at.controls}, x, at.time, forces_);
   while (products < most) {
     forces_.products().times(at, tets, 1.0, 0.0, u, Tangent::full, q);
     ++products;

@@ -1,11 +1,15 @@
 #include "sinew/solver/tangent_operator.h"
 
+#include "sinew/forces/packed.h"
 #include "sinew/forces/terms.h"
 
 namespace sinew {
 
 TangentOperator::TangentOperator(const Model& model, std::shared_ptr<const PackedLayout> layout)
-    : model_(model), material_(std::move(layout)), own_(model.rest_position.size()) {}
+    : model_(model),
+      material_(std::move(layout)),
+      resolved_(resolved_in_single(model)),
+      own_(model.rest_position.size()) {}
 
 void TangentOperator::add(std::span<const Index> nodes, std::span<const double> weights,
                           const Mat3& block) {
@@ -33,9 +37,12 @@ void TangentOperator::add_limits(const Constraints& constraints) {
 }
 
 void TangentOperator::assemble(const Objective& objective, const Field& x, double time,
-                               const TetState& tets) {
+                               ForceEvaluator& forces) {
   const Model& model = objective.model;
-  PackedTangent::Point point{x, tets, objective.rate};
+  PackedTangent::Point point{.x = x, .rate = objective.rate};
+  // Limits on cells and contacts need the tets in double precision anyway.
+  if (objective.constraints != nullptr || &model != &model_ || !resolved_)
+    point.tets = &forces.tets(x);
   if (objective.rate > 0.0) point.lagged = *objective.lagged;
   if (objective.constraints != nullptr) {
     point.tet_pressure = objective.constraints->tet_pressure();

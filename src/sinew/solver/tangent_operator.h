@@ -23,8 +23,8 @@ class TangentOperator {
   TangentOperator(const Model& model, std::shared_ptr<const PackedLayout> layout);
 
   // Takes K at positions x and `time` for objective.model: the constructor's model, or one that
-  // differs from it in stiffness only. `tets` are those at x.
-  void assemble(const Objective& objective, const Field& x, double time, const TetState& tets);
+  // differs from it in volume stiffness only. `forces` are those of objective.model.
+  void assemble(const Objective& objective, const Field& x, double time, ForceEvaluator& forces);
 
   // out = K u (nodes), 0 for prescribed motion; u must be 0 there. Returns u . K u.
   double times(const Field4& u, Field4& out);
@@ -42,6 +42,7 @@ class TangentOperator {
 
   const Model& model_;
   PackedTangent material_;
+  bool resolved_;           // resolved_in_single()
   std::vector<float> own_;  // D [N/m] (nodes), -1: prescribed motion
   std::vector<Element> elements_;
   std::vector<Index> node_;

@@ -278,14 +278,14 @@ std::optional<Timing> BenchSubject::linear(const BenchCase& what, const TimerOpt
                                            BenchRow& row) {
   const Model& m = *model_;
   const Field& x = m.rest_position;
-  const TetState tets = compute_tet_state(m, x);
+  ForceEvaluator forces(m, Precision::single);
   const Controls controls = initial_controls(m);
   const Objective objective{
       .model = m, .controls = controls, .inertia = 1.0 / (frame_seconds * frame_seconds)};
   Field load = outer_forces(m, controls, initial_state(m));
   if (what.kernel == Kernel::iteration) {
     LinearSolver solver(m);
-    solver.assemble(objective, x, 0.0, tets);
+    solver.assemble(objective, x, 0.0, forces);
     Field p;
     const auto solve = [&] { row.products = solver.solve(load, residual, 1000, {}, p); };
     const auto time = measure(
@@ -296,10 +296,10 @@ std::optional<Timing> BenchSubject::linear(const BenchCase& what, const TimerOpt
     return time;
   }
   TangentOperator matrix(m, std::make_shared<PackedLayout>(m));
-  matrix.assemble(objective, x, 0.0, tets);
+  matrix.assemble(objective, x, 0.0, forces);
   if (what.kernel == Kernel::assembly) {
     return measure(
-        options, [] {}, [&] { matrix.assemble(objective, x, 0.0, tets); });
+        options, [] {}, [&] { matrix.assemble(objective, x, 0.0, forces); });
   }
   Field4 u(load.size()), out(load.size());
   for (std::size_t i = 0; i < u.size(); ++i) u[i] = Float4(load[i]);
