@@ -63,9 +63,13 @@ TEST(Precision, SingleRightsATangledBody) {
   EXPECT_EQ(one.inverted_tets, two.inverted_tets);
 }
 
-TEST(Precision, ImplicitStepsStayInDouble) {
-  EXPECT_EQ(run_block({"precision=single", "stepper=implicit", "duration=0.05"}).precision,
-            Precision::double_);
+TEST(Precision, ImplicitStepsToAFineToleranceStayInDouble) {
+  const std::vector<std::string> implicit = {"precision=single", "stepper=implicit",
+                                             "duration=0.05"};
+  EXPECT_EQ(run_block(implicit).precision, Precision::single);
+  std::vector<std::string> fine = implicit;
+  fine.push_back("tolerance=1e-6");
+  EXPECT_EQ(run_block(fine).precision, Precision::double_);
 }
 
 }  // namespace

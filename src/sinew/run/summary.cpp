@@ -107,7 +107,7 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   s.stepper_asked = scene.stepper;
   const bool may_be_single =
       run.stepper == StepperKind::verlet ||
-      (run.stepper == StepperKind::implicit && may_take_single(model, scene.tolerance));
+      (run.stepper == StepperKind::implicit && may_take_single(model, tolerance_of(scene)));
   s.precision = may_be_single && resolved_in_single(model) ? scene.precision : Precision::double_;
   s.stepper_reason = run.stepper_reason;
   s.dt_auto = !scene.dt.has_value();

@@ -19,7 +19,7 @@ double SteppingOptions::first_length(const FirstStep& first) const {
 SteppingOptions stepping_options(const Scene& scene) {
   SteppingOptions o;
   o.stepper = scene.stepper;
-  o.method = {scene.scheme, scene.tolerance, scene.precision};
+  o.method = {scene.scheme, tolerance_of(scene), scene.precision};
   o.dt = scene.dt;
   o.substeps = scene.substeps;
   o.safety = scene.safety;
