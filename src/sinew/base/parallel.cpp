@@ -4,6 +4,11 @@
 
 namespace sinew {
 
+int threads_allowed() {
+  return static_cast<int>(
+      tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+}
+
 ThreadLimit::ThreadLimit(int threads) {
   if (threads > 0) {
     control_ = new tbb::global_control(tbb::global_control::max_allowed_parallelism,

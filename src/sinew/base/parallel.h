@@ -72,6 +72,9 @@ double parallel_sum(Index n, const F& f) {
       [](double a, double b) { return a + b; });
 }
 
+// Threads that may work at a time.
+int threads_allowed();
+
 // While an object of this class lives, at most `threads` threads run the loops above (0: all of the
 // machine).
 class ThreadLimit {

@@ -62,15 +62,18 @@ const TetState& PackedMaterial::tets(const Model& model, std::span<const Vec3> x
 
 namespace {
 
-std::variant<PlainMaterial, PackedMaterial> material_of(const Model& model, Precision precision) {
-  if (precision == Precision::single && resolved_in_single(model)) return PackedMaterial(model);
-  return PlainMaterial();
+std::variant<PlainMaterial, PackedMaterial> material_of(
+    const Model& model, Precision precision, std::shared_ptr<const PackedLayout> layout) {
+  if (precision == Precision::double_ || !resolved_in_single(model)) return PlainMaterial();
+  if (!layout) layout = std::make_shared<PackedLayout>(model);
+  return PackedMaterial(std::move(layout));
 }
 
 }  // namespace
 
-ForceEvaluator::ForceEvaluator(const Model& model, Precision precision)
-    : model_(model), material_(material_of(model, precision)) {
+ForceEvaluator::ForceEvaluator(const Model& model, Precision precision,
+                               std::shared_ptr<const PackedLayout> layout)
+    : model_(model), material_(material_of(model, precision, std::move(layout))) {
   forces_.force.assign(model.rest_position.size(), Vec3::Zero());
 }
 

@@ -45,7 +45,8 @@ class PlainMaterial {
 // The same in single precision.
 class PackedMaterial {
  public:
-  explicit PackedMaterial(const Model& model) : packed_(model) {}
+  explicit PackedMaterial(std::shared_ptr<const PackedLayout> layout)
+      : packed_(std::move(layout)) {}
 
   void evaluate(const Model& model, const Vec3& gravity, const State& state, NodalForces& found);
   const TetState& tets(const Model& model, std::span<const Vec3> x);
@@ -63,8 +64,10 @@ class PackedMaterial {
 class ForceEvaluator {
  public:
   // The model must outlive the object. Single precision is taken if it resolves the model
-  // (resolved_in_single()), else double.
-  ForceEvaluator(const Model& model, Precision precision);
+  // (resolved_in_single()), else double. layout: of the model, for single precision; null: makes
+  // one.
+  ForceEvaluator(const Model& model, Precision precision,
+                 std::shared_ptr<const PackedLayout> layout = nullptr);
 
   // Springs, dashpots, network, volume, viscosity, gravity, drag, and all `Terms` at state.time.
   // Pinned nodes and anchors get only the material's forces.

@@ -1,6 +1,7 @@
 #include "sinew/forces/packed_tangent.h"
 
 #include <algorithm>
+#include <cstring>
 
 #include "sinew/base/flush_denormals.h"
 #include "sinew/forces/gradient_cells.h"
@@ -188,7 +189,7 @@ void PackedTangent::compute(const Field4& u) {
     for (Index s = 0; s < patch.slots.size(); ++s) {
       const auto n = uz(layout.slot_node[uz(patch.slots.begin + s)]);
       const Float4& own = patch.is_loose() ? u[uz(layout.node_of[n])] : u_[n];
-      std::copy_n(&own.lanes[0], 4, slot_u + 4 * s);
+      std::memcpy(slot_u + 4 * s, &own, sizeof(own));
       force[4 * s + 3] = 0.0f;
     }
     tangent_volumes(layout.rings_of(patch), ring_tangent_.data() + ring_tangent_of(patch), slot_u,

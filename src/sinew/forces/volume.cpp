@@ -91,6 +91,32 @@ bool is_low(const Model& model, std::size_t t, double volume) {
 
 }  // namespace
 
+namespace {
+
+// The cell of a body's node for a region; most nodes have one region.
+class CellOfNode {
+ public:
+  explicit CellOfNode(Range nodes) : first_node_(nodes.begin), first_(uz(nodes.size())) {}
+  // -1 at first.
+  Index& at(Index node, int region) {
+    Entry& own = first_[uz(node - first_node_)];
+    if (own.cell < 0) own.region = region;
+    if (own.region == region) return own.cell;
+    return more_.try_emplace({node, region}, -1).first->second;
+  }
+
+ private:
+  struct Entry {
+    int region = -1;
+    Index cell = -1;
+  };
+  Index first_node_;
+  std::vector<Entry> first_;
+  std::map<std::pair<Index, int>, Index> more_;
+};
+
+}  // namespace
+
 void add_volume_terms(Model& model, const Body& body, const std::vector<Material>& materials) {
   const auto end = uz(body.tets.end);
   model.tet_shear.resize(end, 0.0);
@@ -99,7 +125,7 @@ void add_volume_terms(Model& model, const Body& body, const std::vector<Material
   model.tet_modulus.resize(end, 0.0);
   model.cells.resize(end, {-1, -1, -1, -1});
   model.cell_share.resize(end, {0.0, 0.0, 0.0, 0.0});
-  std::map<std::pair<Index, int>, Index> cell_of;  // (node, region) -> cell
+  CellOfNode cell_of(body.nodes);
   for (auto t = uz(body.tets.begin); t < end; ++t) {
     const int region = model.tet_region[t];
     const Material& m = materials[static_cast<std::size_t>(region)];
@@ -114,13 +140,13 @@ void add_volume_terms(Model& model, const Body& body, const std::vector<Material
     if (kept != Volume::tet) model.tet_guard[t] = model.tet_modulus[t];
     if (kept != Volume::node && m.volume_limit == no_limit) continue;
     for (std::size_t a = 0; a < 4; ++a) {
-      const auto [entry, added] = cell_of.try_emplace({model.tets[t][a], region},
-                                                      static_cast<Index>(model.cell_bulk.size()));
-      if (added) {
+      Index& cell = cell_of.at(model.tets[t][a], region);
+      if (cell < 0) {
+        cell = static_cast<Index>(model.cell_bulk.size());
         model.cell_bulk.push_back(kept == Volume::node ? bulk : 0.0);
         model.volume_limit.push_back(m.volume_limit);
       }
-      model.cells[t][a] = entry->second;
+      model.cells[t][a] = cell;
     }
   }
 }

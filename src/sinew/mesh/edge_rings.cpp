@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 namespace sinew {
 namespace {
@@ -12,10 +13,18 @@ constexpr std::array<std::array<std::size_t, 4>, 6> edge_views = {
 
 // A tet seen from one of its edges, whose smaller node comes first.
 struct View {
-  Edge axis;
-  Index from, to;   // the ring's nodes: axis[0], axis[1], from, to are in positive order
-  std::size_t tet;  // place in `chosen`
+  std::uint64_t axis;  // the smaller node above the larger one: ordered as the edges are
+  Index from, to;      // the ring's nodes: the axis' nodes, from, to are in positive order
+  Index tet;           // place in `chosen`
+
+  Edge edge() const {
+    return {static_cast<Index>(axis >> 32), static_cast<Index>(axis & 0xffffffffU)};
+  }
 };
+
+std::uint64_t axis_of(Index low, Index high) {
+  return static_cast<std::uint64_t>(low) << 32 | static_cast<std::uint64_t>(high);
+}
 
 std::vector<View> views_of(std::span<const Tet> tets, std::span<const Index> chosen) {
   std::vector<View> views;
@@ -24,9 +33,9 @@ std::vector<View> views_of(std::span<const Tet> tets, std::span<const Index> cho
     const Tet& t = tets[uz(chosen[k])];
     for (const auto& [a, b, c, d] : edge_views) {
       if (t[a] < t[b]) {
-        views.push_back({{t[a], t[b]}, t[c], t[d], k});
+        views.push_back({axis_of(t[a], t[b]), t[c], t[d], static_cast<Index>(k)});
       } else {
-        views.push_back({{t[b], t[a]}, t[d], t[c], k});
+        views.push_back({axis_of(t[b], t[a]), t[d], t[c], static_cast<Index>(k)});
       }
     }
   }
@@ -46,7 +55,7 @@ class Chains {
   std::vector<std::size_t> find(std::size_t longest) const {
     std::vector<std::size_t> best;
     for (std::size_t first = 0; first < star_.size(); ++first) {
-      if (taken_[star_[first].tet] != 0) continue;
+      if (taken_[uz(star_[first].tet)] != 0) continue;
       std::vector<std::size_t> chain{first};
       while (chain.size() < longest) {
         const std::size_t next = after(chain.back());
@@ -61,9 +70,9 @@ class Chains {
 
  private:
   std::size_t after(std::size_t k) const {
-    const auto key_of = [&](const View& v) { return key_[uz(chosen_[v.tet])]; };
+    const auto key_of = [&](const View& v) { return key_[uz(chosen_[uz(v.tet)])]; };
     std::size_t n = 0;
-    while (n < star_.size() && (star_[n].from != star_[k].to || taken_[star_[n].tet] != 0 ||
+    while (n < star_.size() && (star_[n].from != star_[k].to || taken_[uz(star_[n].tet)] != 0 ||
                                 key_of(star_[n]) != key_of(star_[k]))) {
       ++n;
     }
@@ -102,11 +111,11 @@ std::vector<EdgeRing> cut_into_edge_rings(std::span<const Tet> tets, std::span<c
     for (const auto& star : stars) {
       std::vector<std::size_t> chain = Chains(star, chosen, key, taken).find(length);
       for (; chain.size() == length; chain = Chains(star, chosen, key, taken).find(length)) {
-        EdgeRing ring{star.front().axis, {star[chain.front()].from}, {}};
+        EdgeRing ring{star.front().edge(), {star[chain.front()].from}, {}};
         for (const std::size_t k : chain) {
-          taken[star[k].tet] = 1;
+          taken[uz(star[k].tet)] = 1;
           ring.nodes.push_back(star[k].to);
-          ring.tets.push_back(chosen[star[k].tet]);
+          ring.tets.push_back(chosen[uz(star[k].tet)]);
         }
         rings.push_back(std::move(ring));
       }

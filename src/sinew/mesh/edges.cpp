@@ -56,9 +56,8 @@ EdgeTable build_edges(std::span<const Tet> tets, Index node_count) {
     std::sort(begin, end);
     for (auto key = begin; key != end; ++key) {
       if (key != begin && *key == *(key - 1)) continue;  // a degenerate tet names an edge twice
-      const Edge edge = {low, static_cast<Index>(*key >> 32)};
-      if (table.edges.empty() || table.edges.back() != edge) {
-        table.edges.push_back(edge);
+      if (key == begin || *key >> 32 != *(key - 1) >> 32) {
+        table.edges.push_back({low, static_cast<Index>(*key >> 32)});
         table.tet_start.push_back(static_cast<Index>(table.tets.size()));
       }
       table.tets.push_back(static_cast<Index>(*key & 0xffffffffU));

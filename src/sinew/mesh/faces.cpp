@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "sinew/base/cancel.h"
 #include "sinew/base/error.h"
@@ -9,9 +10,10 @@
 namespace sinew {
 namespace {
 
+// A side of a tet, at the lowest of its nodes.
 struct Entry {
-  Index mid, high, side;
-  auto operator<=>(const Entry&) const = default;
+  std::uint64_t others;  // the middle node above the highest one
+  Index side;
 };
 
 Triangle sorted_face(const Tet& tet, std::size_t corner) {
@@ -42,7 +44,9 @@ FaceTable build_faces(std::span<const Tet> tets, Index node_count) {
   for (std::size_t t = 0; t < tets.size(); ++t) {
     for (std::size_t corner = 0; corner < 4; ++corner) {
       const Triangle face = sorted_face(tets[t], corner);
-      entries[uz(next[uz(face[0])]++)] = {face[1], face[2], static_cast<Index>(4 * t + corner)};
+      entries[uz(next[uz(face[0])]++)] = {
+          static_cast<std::uint64_t>(face[1]) << 32 | static_cast<std::uint64_t>(face[2]),
+          static_cast<Index>(4 * t + corner)};
     }
   }
 
@@ -52,11 +56,13 @@ FaceTable build_faces(std::span<const Tet> tets, Index node_count) {
     stop_if_cancelled();
     const auto begin = entries.begin() + start[uz(low)];
     const auto end = entries.begin() + start[uz(low) + 1];
-    std::sort(begin, end);
+    std::sort(begin, end, [](const Entry& a, const Entry& b) {
+      return a.others != b.others ? a.others < b.others : a.side < b.side;
+    });
     for (auto entry = begin; entry != end; ++entry) {
-      const Triangle face = {low, entry->mid, entry->high};
-      if (table.faces.empty() || table.faces.back() != face) {
-        table.faces.push_back(face);
+      if (entry == begin || entry->others != (entry - 1)->others) {
+        table.faces.push_back({low, static_cast<Index>(entry->others >> 32),
+                               static_cast<Index>(entry->others & 0xffffffffU)});
         table.side_start.push_back(static_cast<Index>(table.sides.size()));
       }
       table.sides.push_back(entry->side);

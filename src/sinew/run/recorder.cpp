@@ -128,13 +128,7 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
 
 void Recorder::record(const Controls& controls, const RunState& run, const Energies& e,
                       const std::vector<Vec3>& force, ContactFinder* finder) {
-  if (vtu_) {
-    const std::string file = frame_file(scene_, run.frame_times.size() - 1);
-    io::write_file(folder_ / file, format_frame(model_, run, force, encoding_, cells_));
-    not_synced_.push_back(folder_ / file);
-    entries_.push_back({run.frame_times.back(), file});
-    io::write_pvd(folder_ / (scene_ + ".pvd"), entries_);
-  }
+  if (vtu_) write_frame(run, force);
 
   const std::vector<Vec3>& x = run.state.position;
   std::string row = fmt::format("{}", run.state.time);
@@ -165,6 +159,23 @@ void Recorder::record(const Controls& controls, const RunState& run, const Energ
           fmt::format("{},{},{:.4f},{},{},{},{:.4g},{}", run.frame_times.size() - 1, run.state.time,
                       1e3 * w.seconds, w.steps, w.newton_steps, w.products, w.residual,
                       w.steps_cut_short > 0 ? "yes" : "no"));
+}
+
+void Recorder::write_frame(RunState run, const std::vector<Vec3>& force) {
+  wait_for_frame();
+  const std::string file = frame_file(scene_, run.frame_times.size() - 1);
+  not_synced_.push_back(folder_ / file);
+  entries_.push_back({run.frame_times.back(), file});
+  auto write = [this, file, force, run = std::move(run)] {
+    io::write_file(folder_ / file, format_frame(model_, run, force, encoding_, cells_));
+    io::write_pvd(folder_ / (scene_ + ".pvd"), entries_);
+  };
+  if (threads_allowed() == 1) return write();
+  frame_in_progress_ = std::async(std::launch::async, std::move(write));
+}
+
+void Recorder::wait_for_frame() {
+  if (frame_in_progress_.valid()) frame_in_progress_.get();
 }
 
 std::string format_frame(const Model& model, const RunState& run, const std::vector<Vec3>& force,
@@ -213,6 +224,7 @@ std::string format_frame(const Model& model, const RunState& run, const std::vec
 }
 
 void Recorder::sync() {
+  wait_for_frame();
   for (const char* table : {"probes.csv", "energy.csv", "frames.csv"})
     io::sync_to_disk(folder_ / table);
   for (const fs::path& frame : not_synced_) io::sync_to_disk(frame);

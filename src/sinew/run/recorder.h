@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <future>
 #include <string>
 #include <vector>
 
@@ -29,10 +30,14 @@ class Recorder {
   void record(const Controls& controls, const RunState& run, const Energies& energies,
               const std::vector<Vec3>& force, ContactFinder* finder);
 
-  // Waits until everything written so far is on the disk. Throws Error(io).
+  // Waits until everything written so far is on the disk. Throws Error(io), also for a frame that
+  // could not be written since the last call of a function.
   void sync();
 
  private:
+  void write_frame(RunState run, const std::vector<Vec3>& force);
+  void wait_for_frame();
+
   const Model& model_;
   std::string scene_;  // its name, which is part of the file names
   std::filesystem::path folder_;
@@ -44,6 +49,8 @@ class Recorder {
   std::ofstream probes_;
   std::ofstream energy_;
   std::ofstream frames_;
+  // A frame is compressed and written while the next one is computed, if there is a thread for it.
+  std::future<void> frame_in_progress_;
 };
 
 // The state as a VTU file: tets with displacement, velocity, stretch, pinned, volume ratio,

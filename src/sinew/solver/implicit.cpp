@@ -78,7 +78,10 @@ bool may_take_single(const Model& model, double tolerance) {
 }
 
 ImplicitStepper::ImplicitStepper(const Model& model)
-    : model_(model), forces_(model, Precision::double_), linear_(model) {}
+    : model_(model),
+      layout_(std::make_shared<PackedLayout>(model)),
+      forces_(model, Precision::double_),
+      linear_(model, layout_) {}
 
 void ImplicitStepper::prepare(double h, const Controls& controls, const ImplicitOptions& options) {
   if (options.scheme != Scheme::backward_euler) h *= stage_share;
@@ -88,7 +91,7 @@ void ImplicitStepper::prepare(double h, const Controls& controls, const Implicit
 
 ForceEvaluator& ImplicitStepper::evaluator(const ImplicitOptions& options) {
   if (!options.single || !may_take_single(model_, options.tolerance)) return forces_;
-  if (!in_single_) in_single_.emplace(model_, Precision::single);
+  if (!in_single_) in_single_.emplace(model_, Precision::single, layout_);
   return *in_single_;
 }
 

@@ -87,6 +87,7 @@ class ImplicitStepper {
                              const ImplicitOptions& options, State& state, StepReport& report);
 
   const Model& model_;
+  std::shared_ptr<const PackedLayout> layout_;
   ForceEvaluator forces_;                    // in double precision
   std::optional<ForceEvaluator> in_single_;  // created at the first use
   LinearSolver linear_;

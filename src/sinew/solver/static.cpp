@@ -12,6 +12,7 @@
 #include "sinew/forces/stiffness.h"
 #include "sinew/forces/terms.h"
 #include "sinew/model/mean_edge.h"
+#include "sinew/solver/implicit.h"
 #include "sinew/solver/limit_load.h"
 #include "sinew/solver/newton.h"
 #include "sinew/solver/support.h"
@@ -24,6 +25,8 @@ constexpr double turn_per_load_step = 20.0 * 3.14159265358979 / 180.0;  // [rad]
 // whose kappa is at most this many times mu: W(4) at nu = 0.499 takes 41 instead of 74 at 15 kPa,
 // 19 instead of 23 at 1.5 MPa.
 constexpr double soft_volume = 30.0;
+// Down to this residual the forces of single precision are exact enough, and several times as fast.
+constexpr double single_residual = 1e-3;
 constexpr int cuts_before_falling = 2;       // then dynamic relaxation is tried, once
 constexpr double shortest_load_step = 0.02;  // of the change of the loads
 constexpr double share_of_steps = 0.3;  // of StaticOptions::most_work; dynamic relaxation takes all
@@ -58,9 +61,12 @@ double pins_turn(const Controls& controls, double from, double to) {
 
 StaticSolver::StaticSolver(const Model& model)
     : model_(model),
+      layout_(std::make_shared<PackedLayout>(model)),
       forces_(model, Precision::double_),
-      linear_(model),
+      linear_(model, layout_),
       constraints_(model, 10.0 * model.start_gravity.norm() / mean_edge(model), 0.0, false) {
+  if (may_take_single(model, single_residual))
+    in_single_.emplace(model, Precision::single, layout_);
   double stiffest = 0.0;
   for (std::size_t t = 0; t < model.tets.size(); ++t) {
     double bulk = model.tet_bulk[t];
@@ -288,8 +294,14 @@ StepReport StaticSolver::solve(const Controls& controls, double time, const Stat
     };
     // Before the last load step it is enough to stay near the path.
     const double tolerance = next < 1.0 ? std::max(options.tolerance, 1e-3) : options.tolerance;
+    const auto approach = [&] {  // in single precision; what that cannot do is left to double
+      if (!in_single_) return;
+      const State there = state;
+      if (!newton(model_, *in_single_, std::max(tolerance, single_residual))) state = there;
+    };
+    if (!softened_) approach();
     if ((!softened_ || newton(softened_->model, softened_->forces, 1e-2)) &&
-        newton(model_, forces_, tolerance)) {
+        (report.stopped || newton(model_, forces_, tolerance))) {
       done = next;
       if (report.stopped) break;
       if (cuts > 0) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "sinew/forces/force_evaluator.h"
 #include "sinew/forces/term.h"
@@ -84,7 +85,9 @@ class StaticSolver {
                       State& state);
 
   const Model& model_;
+  std::shared_ptr<const PackedLayout> layout_;
   ForceEvaluator forces_;
+  std::optional<ForceEvaluator> in_single_;  // on the way to a residual of 1e-3; none: not allowed
   double proximal_stiffness_ = 0.0;  // see settle() [1/s2]; 0 if every body is held
   LinearSolver linear_;
   Constraints constraints_;
