@@ -10,6 +10,7 @@
 #include "sinew/base/error.h"
 #include "sinew/contact/contact_finder.h"
 #include "sinew/forces/inversion_recovery.h"
+#include "sinew/solver/implicit.h"
 
 namespace sinew {
 namespace {
@@ -95,7 +96,11 @@ class Policy {
     const double steps = steps_a_frame(choice);
     trial.newton *= steps / trial_steps;
     trial.products *= steps / trial_steps;
-    trial.work = step_cost * steps + newton_cost * trial.newton + product_cost * trial.products;
+    const StepperOptions& method = options_.method;
+    const bool single =
+        method.precision == Precision::single && may_take_single(model_, method.tolerance);
+    trial.work = step_cost * steps + product_cost * trial.products +
+                 (single ? single_newton_cost : newton_cost) * trial.newton;
     return trial;
   }
 

@@ -13,15 +13,16 @@
 namespace sinew {
 
 // The cost of the parts of an implicit step, in Verlet steps in double precision on the same model.
-// Fitted to runs of the network law on W(4), W(8) and the liver; they predict the cost of implicit
-// steps of 14 to 69 Verlet steps within 30 %. The choice uses counted work times these constants
-// instead of wall time, so a scene takes the same stepper on every machine.
-inline constexpr double step_cost = 6.0;     // start of its two solves, energy account
-inline constexpr double newton_cost = 4.0;   // forces, matrix, line search
-inline constexpr double product_cost = 0.2;  // with the matrix, preconditioner included
-// The cost of a Verlet step in single precision, in those in double precision: 0.29 to 0.55 on the
-// beams W(4) to W(17) and the liver.
-inline constexpr double single_step_cost = 0.4;
+// Fitted to frames of the network law on W(4), W(8) and W(17), of 5 to 7 Verlet steps, which they
+// predict within 20 %. The choice uses counted work times these constants instead of wall time, so
+// a scene takes the same stepper on every machine.
+inline constexpr double step_cost = 2.0;           // start of its two solves, energy account
+inline constexpr double newton_cost = 1.5;         // forces, tangent, line search
+inline constexpr double single_newton_cost = 0.6;  // the same with forces in single precision
+inline constexpr double product_cost = 0.25;       // with the tangent, preconditioner included
+// The cost of a Verlet step in single precision, in those in double precision: 0.17 to 0.23 on W(4)
+// to W(17).
+inline constexpr double single_step_cost = 0.22;
 
 // Whether implicit steps suit the model: it has no contacts and no limits, which explicit steps
 // handle better.

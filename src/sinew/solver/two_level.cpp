@@ -114,6 +114,11 @@ class CoarseBlocks {
     if (added) entry->second.setZero();
     return entry->second;
   }
+  template <class F>
+  void for_each(const F& f) const {
+    for (std::size_t col = 0; col < column_.size(); ++col)
+      for (const auto& [row, block] : column_[col]) f(row, static_cast<Index>(col), block);
+  }
   std::vector<std::map<Index, CoarseBlock>>&& take() { return std::move(column_); }
 
  private:
@@ -148,50 +153,80 @@ void sum_by_group(std::span<const Index> nodes, const Values& values,
   }
 }
 
-// Calls f(block, row shares, column shares) for all pairs of groups of a form.
+// Calls f(row shares, column shares, block) for all pairs of groups of a form.
 template <class T, class F>
 void for_each_group_pair(const std::vector<Shares<T>>& sums, CoarseBlocks& blocks, const F& f) {
   for (const Shares<T>& row : sums) {
     for (const Shares<T>& col : sums) {
-      if (row.group < col.group) continue;
-      CoarseBlock& block = blocks.at(row.group, col.group);
-      for (int p = 0; p < 4; ++p) {
-        for (int q = 0; q < 4; ++q) {
-          block.block<3, 3>(3 * p, 3 * q) +=
-              f(row.motion[static_cast<std::size_t>(p)], col.motion[static_cast<std::size_t>(q)]);
-        }
-      }
+      if (row.group >= col.group) f(row.motion, col.motion, blocks.at(row.group, col.group));
     }
   }
+}
+
+// With the twelve numbers G of a cell's group, a vector G_p for each motion p, the cell's block of
+// motions p and q is shear (G_p . G_q 1 + G_q G_p^T) + volume G_p G_q^T: it follows from the sums
+// of shear G G^T and of volume G G^T over all cells.
+using Twelve = Eigen::Matrix<double, coarse_size, 1>;
+
+void add_outer(double weight, const std::array<Vec3, 4>& row, const std::array<Vec3, 4>& col,
+               CoarseBlock& sum) {
+  const Eigen::Map<const Twelve> g(row[0].data()), h(col[0].data());
+  sum.noalias() += (weight * g) * h.transpose();
+}
+
+CoarseBlock block_of(const CoarseBlock& shear) {
+  CoarseBlock out;
+  for (int p = 0; p < coarse_size; p += 3) {
+    for (int q = 0; q < coarse_size; q += 3) {
+      const Mat3 sum = shear.block<3, 3>(p, q);
+      out.block<3, 3>(p, q) = sum.trace() * Mat3::Identity() + sum.transpose();
+    }
+  }
+  return out;
 }
 
 }  // namespace
 
 void TwoLevel::factor(const Objective& rest, double time) {
-  CoarseBlocks blocks(centre_.size());
+  CoarseBlocks blocks(centre_.size()), shear(centre_.size()), volume(centre_.size());
   diagonal_.assign(group_.size(), Mat3::Zero());
   std::vector<Shares<Vec3>> of_cell;
   std::vector<Shares<double>> of_element;
   for_each_rest_form(
       rest, time,
       [&](const CellForm& cell) {
-        const auto block = [&](const Vec3& g, const Vec3& h) {
-          return Mat3(cell.shear * (g.dot(h) * Mat3::Identity() + h * g.transpose()) +
-                      cell.volume * g * h.transpose());
-        };
-        for (std::size_t a = 0; a < cell.nodes.size(); ++a)
-          diagonal_[uz(cell.nodes[a])] += block(cell.gradients[a], cell.gradients[a]);
+        for (std::size_t a = 0; a < cell.nodes.size(); ++a) {
+          const Vec3& g = cell.gradients[a];
+          Mat3& own = diagonal_[uz(cell.nodes[a])];
+          own += ((cell.shear + cell.volume) * g) * g.transpose();
+          own.diagonal().array() += cell.shear * g.squaredNorm();
+        }
         sum_by_group(cell.nodes, cell.gradients, group_, shape_, Vec3(Vec3::Zero()), of_cell);
-        for_each_group_pair(of_cell, blocks, block);
+        for (const auto& [weight, sums] : {std::pair{cell.shear, &shear}, {cell.volume, &volume}}) {
+          if (weight == 0.0) continue;
+          for_each_group_pair(of_cell, *sums, [&](const auto& row, const auto& col, auto& sum) {
+            add_outer(weight, row, col, sum);
+          });
+        }
       },
       [&](std::span<const Index> nodes, std::span<const double> weights, const Mat3& block,
           bool of_material) {
         for (std::size_t a = 0; of_material && a < nodes.size(); ++a)
           diagonal_[uz(nodes[a])] += weights[a] * weights[a] * block;
         sum_by_group(nodes, weights, group_, shape_, 0.0, of_element);
-        for_each_group_pair(of_element, blocks,
-                            [&](double v, double w) { return Mat3(v * w * block); });
+        for_each_group_pair(of_element, blocks, [&](const auto& v, const auto& w, auto& sum) {
+          for (int p = 0; p < 4; ++p) {
+            for (int q = 0; q < 4; ++q)
+              sum.template block<3, 3>(3 * p, 3 * q) += v[uz(p)] * w[uz(q)] * block;
+          }
+        });
       });
+  shear.for_each([&](Index row, Index col, const CoarseBlock& of_shear) {
+    blocks.at(row, col) += block_of(of_shear);
+  });
+  volume.for_each([&](Index row, Index col, const CoarseBlock& of_volume) {
+    blocks.at(row, col) += of_volume;
+  });
   for (Index g = 0; g < group_count(); ++g) {
     CoarseBlock& b = blocks.at(g, g);
     const double mean = b.trace() / coarse_size;
