@@ -67,12 +67,12 @@ TEST(BenchWork, BytesOfTets) {
   for (const Range& active : m.active_springs) springs += active.size();
   const Work single = forces_work(m, Precision::single);
   EXPECT_DOUBLE_EQ(single.bytes, nodes * (24 + 24 + 16 + 24 + 16 + 16) + cells * 8 +
-                                     2.0 * tets * (34 + 4) + springs * 30.5);
+                                     2.0 * tets * (34 + 4) + springs * 30.5 +
+                                     m.edge_cells.count() * 12.0 +
+                                     static_cast<double>(m.edge_cells.node.size()) * 14.0);
   // The second pass over the tets reads what the first has read again.
   EXPECT_DOUBLE_EQ(single.bytes - single.working_set, tets * (34 + 4));
-  const double entries = static_cast<double>(m.network_node.size());
-  EXPECT_DOUBLE_EQ(gather_work(m, Precision::single).bytes,
-                   entries * 0.8 * 12 + nodes * (20 + 16 + 24));
+  EXPECT_DOUBLE_EQ(gather_work(m, Precision::single).bytes, nodes * (20 + 16 + 24));
   const Work step = step_work(m, Precision::double_);
   EXPECT_EQ(step.bytes, forces_work(m, Precision::double_).bytes +
                             gather_work(m, Precision::double_).bytes + update_work(m).bytes);

@@ -1,6 +1,6 @@
 // The terms of the material and gravity, one by one in plain loops: the reference for the tests of
 // the fused loops (forces/force_evaluator.h, forces/stiffness.h, forces/packed.h,
-// solver/tangent_matrix.h), which compute all terms at once.
+// solver/tangent_operator.h), which compute all terms at once.
 #pragma once
 
 #include <algorithm>

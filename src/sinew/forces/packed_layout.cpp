@@ -21,7 +21,35 @@ Mat3 axes_of(const Vec3& a, const Vec3& b, const Vec3& c) {
   return axes;
 }
 
+// Three nodes of the body: the one nearest to its middle, the farthest from that one, and the
+// farthest from the line of both.
+std::array<Index, 3> frame_nodes_of(const Model& model, const Body& body) {
+  const auto& X = model.rest_position;
+  const auto best = [&](const auto& score) {
+    Index chosen = body.nodes.begin;
+    for (Index i = body.nodes.begin; i < body.nodes.end; ++i) {
+      if (score(X[uz(i)]) > score(X[uz(chosen)])) chosen = i;
+    }
+    return chosen;
+  };
+  Vec3 middle = Vec3::Zero();
+  for (Index i = body.nodes.begin; i < body.nodes.end; ++i) middle += X[uz(i)];
+  middle /= std::max(1, body.nodes.size());
+  const Index a = best([&](const Vec3& x) { return -(x - middle).norm(); });
+  const Index b = best([&](const Vec3& x) { return (x - X[uz(a)]).norm(); });
+  const Vec3 along = X[uz(b)] - X[uz(a)];
+  const Index c = best([&](const Vec3& x) { return along.cross(x - X[uz(a)]).norm(); });
+  return {a, b, c};
+}
+
 }  // namespace
+
+void pack_into(const Model& model, PackedLayout& layout);  // packer.cpp
+
+PackedLayout::PackedLayout(const Model& model) {
+  for (const Body& body : model.bodies) frame_nodes.push_back(frame_nodes_of(model, body));
+  pack_into(model, *this);
+}
 
 Mat3 PackedLayout::rotation(const Model& model, Index body, std::span<const Vec3> x) const {
   const auto [i, j, k] = frame_nodes[uz(body)];

@@ -23,27 +23,6 @@ constexpr std::size_t longest_one_ring = 8;
 constexpr std::size_t most_slots = 0x10000 / 4;  // per patch: 4 x slot has 16 bits
 constexpr std::size_t most_corners_of_ring = 3 + std::max(longest_ring, longest_one_ring);
 
-// Three nodes of the body: the one nearest to its middle, the farthest from that one, and the
-// farthest from the line of both.
-std::array<Index, 3> frame_nodes_of(const Model& model, const Body& body) {
-  const auto& X = model.rest_position;
-  const auto best = [&](const auto& score) {
-    Index chosen = body.nodes.begin;
-    for (Index i = body.nodes.begin; i < body.nodes.end; ++i) {
-      if (score(X[uz(i)]) > score(X[uz(chosen)])) chosen = i;
-    }
-    return chosen;
-  };
-  Vec3 middle = Vec3::Zero();
-  for (Index i = body.nodes.begin; i < body.nodes.end; ++i) middle += X[uz(i)];
-  middle /= std::max(1, body.nodes.size());
-  const Index a = best([&](const Vec3& x) { return -(x - middle).norm(); });
-  const Index b = best([&](const Vec3& x) { return (x - X[uz(a)]).norm(); });
-  const Vec3 along = X[uz(b)] - X[uz(a)];
-  const Index c = best([&](const Vec3& x) { return along.cross(x - X[uz(a)]).norm(); });
-  return {a, b, c};
-}
-
 }  // namespace
 
 class Packer {
@@ -118,7 +97,6 @@ class Packer {
     packed_of_.assign(model_.rest_position.size(), -1);
     patch_of_.assign(model_.rest_position.size(), -1);
     for (std::size_t b = 0; b < model_.bodies.size(); ++b) {
-      to_.frame_nodes.push_back(frame_nodes_of(model_, model_.bodies[b]));
       order_nodes_of(model_.bodies[b].nodes, static_cast<Index>(b));
     }
     order_nodes_of({model_.body_node_count(), model_.node_count()}, -1);
@@ -447,8 +425,8 @@ class Packer {
   Index patch_ = 0;                                       // the current patch
 };
 
-PackedLayout::PackedLayout(const Model& model) {
-  Packer(model, *this).pack();
+void pack_into(const Model& model, PackedLayout& layout) {
+  Packer(model, layout).pack();
 }
 
 }  // namespace sinew

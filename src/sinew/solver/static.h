@@ -88,7 +88,7 @@ class StaticSolver {
   std::shared_ptr<const PackedLayout> layout_;
   ForceEvaluator forces_;
   std::optional<ForceEvaluator> in_single_;  // on the way to a residual of 1e-3; none: not allowed
-  double proximal_stiffness_ = 0.0;  // see settle() [1/s2]; 0 if every body is held
+  double proximal_stiffness_ = 0.0;          // see settle() [1/s2]; 0 if every body is held
   LinearSolver linear_;
   Constraints constraints_;
   Index contacts_at_rest_ = 0;  // of rest_by_contact()

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "sinew/mesh/edges.h"
-
 namespace sinew::study {
 namespace {
 
@@ -14,12 +12,17 @@ constexpr double real = 8.0;          // a number in double precision
 constexpr double four = 16.0;         // Float4, a slot or a padded vector
 constexpr double block = 3.0 * four;  // Block3
 
-// forces/packed.h. A tet of a fan of n has (n + 3) / n corners, its own constants and its share of
-// the head's: 34 on the beams. A pair of rows has 0.8 places for each entry of the network, each
-// with an offset and two constants.
+// forces/packed_layout.h. A tet of a fan of n has (n + 3) / n corners, its own constants and its
+// share of the head's: 34 on the beams. A node of an edge cell has a corner and a gradient.
 constexpr double packed_tet = 34.0;
 constexpr double packed_spring = 2.0 * 1.25 + 4.0 * 7.0;
-constexpr double packed_entry = 0.8 * (4.0 + 8.0);
+constexpr double packed_cell = 3.0 * 4.0;  // its head
+constexpr double packed_cell_node = 2.0 + 12.0;
+
+// forces/packed_tangent.h: edges, pressure, stiffness and share of a tet, its corners; F and the
+// pressure of an edge cell.
+constexpr double tangent_tet = 4.0 * (6.0 + 6.0 / 3.0) + 2.0 * 2.0;
+constexpr double tangent_cell = 4.0 * 10.0;
 
 // Operations, in displacements (packed_kernels.cpp) or positions.
 constexpr double volume_flops = 53.0;  // of a tet in its fan: 3 sums of vectors, 3 cross and 2 dot
@@ -31,12 +34,13 @@ constexpr double spring_flops = 46.0;  // 3 sums of vectors, 3 dot products, a r
                                        // 1.2 forces added
 constexpr double network_flops = 6.0;  // of an entry: k u_j added
 constexpr double update_flops = 24.0;  // of a node
-constexpr double near_flops = 21.0;    // of a block: B (u_i - u_j) added
-constexpr double far_flops = 9.0;
-constexpr double cell_flops = 12.0;  // of an entry: G . u and its way back
+constexpr double edge_flops = 105.0;   // of an edge cell: the stress from H
+constexpr double edge_node_flops = 45.0;  // of its node: its part of H, its force, both ends added
+constexpr double edge_tangent_flops = 190.0;  // of an edge cell: the change of the stress
+constexpr double ring_tangent_flops = 130.0;  // of a tet: both of its passes
 
 struct Counts {
-  double nodes, tets, cells, springs, network;
+  double nodes, tets, cells, springs, network, edge_cells, edge_nodes;
 };
 
 Counts counts_of(const Model& model) {
@@ -44,8 +48,11 @@ Counts counts_of(const Model& model) {
   for (const Range& active : model.active_springs) springs += active.size();
   return {static_cast<double>(model.node_count()),
           model.has_volume ? static_cast<double>(model.tet_count()) : 0.0,
-          static_cast<double>(model.cell_count()), springs,
-          static_cast<double>(model.network_node.size())};
+          static_cast<double>(model.cell_count()),
+          springs,
+          static_cast<double>(model.network_node.size()),
+          static_cast<double>(model.edge_cells.count()),
+          static_cast<double>(model.edge_cells.node.size())};
 }
 
 // An array that one pass reads or writes.
@@ -64,6 +71,8 @@ Work single_forces(const Counts& n) {
   w = w + pass(n.tets, packed_tet + 4.0, volume_flops);
   w = w + pass(n.cells, 4.0 + 4.0, 1.0);
   w = w + again(n.tets, packed_tet + 4.0, tet_flops);
+  w = w + pass(n.edge_cells, packed_cell, edge_flops) +
+      pass(n.edge_nodes, packed_cell_node, edge_node_flops);
   return w + pass(n.springs, packed_spring, spring_flops) + pass(n.nodes, four);  // forces
 }
 
@@ -108,8 +117,7 @@ Work forces_work(const Model& model, Precision precision) {
 Work gather_work(const Model& model, Precision precision) {
   const Counts n = counts_of(model);
   if (precision == Precision::single) {
-    return pass(n.network, packed_entry, network_flops) + pass(n.nodes, id + four) +
-           pass(n.nodes, four) + pass(n.nodes, vec);
+    return pass(n.nodes, id + four) + pass(n.nodes, four) + pass(n.nodes, vec);
   }
   return pass(n.network, id + real, network_flops) + again(n.nodes, vec) +
          pass(2.0 * n.springs, id, 3.0) + again(n.springs, vec) + pass(4.0 * n.tets, id, 6.0) +
@@ -130,24 +138,11 @@ Work step_work(const Model& model, Precision precision) {
 
 Work product_work(const Model& model) {
   const Counts n = counts_of(model);
-  const double near =
-      2.0 * static_cast<double>(build_edges(model.tets, model.node_count()).edges.size());
-  const double far = std::max(0.0, n.network - near);
-  // Entries of the cells: nodes that their tets have.
-  std::vector<Index> seen(model.rest_position.size(), -1);
-  double entries = 0.0;
-  for (Index c = 0; c < model.cell_count(); ++c) {
-    for (auto k = uz(model.cell_start[uz(c)]); k < uz(model.cell_start[uz(c) + 1]); ++k) {
-      for (const Index node : model.tets[uz(model.cell_tet[k])]) {
-        if (seen[uz(node)] == c) continue;
-        seen[uz(node)] = c;
-        entries += 1.0;
-      }
-    }
-  }
-  return pass(near, block + id, near_flops) + pass(far, 4.0 + id, far_flops) +
-         pass(2.0 * entries, four + id, 0.5 * cell_flops) + again(n.cells, 3.0 * 4.0) +
-         pass(n.nodes, block + four + four);
+  return pass(n.nodes, four + four) + pass(n.tets, tangent_tet + 4.0, ring_tangent_flops) +
+         again(n.tets, tangent_tet + 4.0) + pass(n.cells, 4.0 + 4.0, 1.0) +
+         pass(n.edge_cells, packed_cell + tangent_cell, edge_tangent_flops) +
+         pass(n.edge_nodes, packed_cell_node, edge_node_flops) +
+         pass(n.springs, 2.0 * 1.25 + 4.0 * 6.0, 33.0) + pass(n.nodes, id + four + four + four);
 }
 
 Work iteration_work(const Model& model) {

@@ -28,7 +28,7 @@ Work step_work(const Model& model, Precision precision);    // all three
 Work springs_work(const Model& model);                      // compute_spring_forces
 Work volumes_work(const Model& model);                      // compute_volume_pressures
 
-// The parts of an iteration of conjugate gradients (solver/tangent_matrix.h).
+// The parts of an iteration of conjugate gradients (solver/tangent_operator.h).
 Work product_work(const Model& model);    // a product with the tangent
 Work iteration_work(const Model& model);  // with the vectors and the diagonal of the preconditioner
 
