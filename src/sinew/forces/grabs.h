@@ -12,7 +12,6 @@ namespace sinew {
 
 struct GrabTerm {
   static constexpr Account account = Account::contact;
-  static constexpr bool isotropic = true;
   static constexpr bool holds = true;
 
   static double energy(const Configuration& at) {

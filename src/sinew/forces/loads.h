@@ -43,7 +43,6 @@ void for_each_load_force(const Model& model, std::span<const Vec3> x, double tim
 
 struct LoadTerm {
   static constexpr Account account = Account::work;
-  static constexpr bool isotropic = true;
 
   // The potential of the loads, 0 at rest: its negative gradient with respect to the free nodes is
   // their force. For a force or a traction it is -f . (x - X); for a pressure p times the change of

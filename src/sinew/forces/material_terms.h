@@ -16,7 +16,6 @@ namespace sinew {
 
 struct SpringTerm {
   static constexpr Account account = Account::elastic;
-  static constexpr bool isotropic = false;
   static double energy(const Configuration& at);
   static void add_forces(const Configuration& at, std::span<Vec3> forces);
   // Visits every spring, also those without stiffness: distance constraints join bodies too.
@@ -42,7 +41,6 @@ struct SpringTerm {
 
 struct NetworkTerm {
   static constexpr Account account = Account::elastic;
-  static constexpr bool isotropic = true;
   static double energy(const Configuration& at);
   static void add_forces(const Configuration& at, std::span<Vec3> forces);
   template <class F>
@@ -74,7 +72,6 @@ struct VolumeTerm {
 
 struct GravityTerm {
   static constexpr Account account = Account::gravity;
-  static constexpr bool isotropic = true;
   static double energy(const Configuration& at);
   static void add_forces(const Configuration& at, std::span<Vec3> forces);
   template <class F>

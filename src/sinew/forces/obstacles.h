@@ -72,7 +72,6 @@ std::vector<SoftSphere> soft_spheres(const Model& model, const Controls& control
 
 struct ObstacleTerm {
   static constexpr Account account = Account::contact;
-  static constexpr bool isotropic = false;
 
   static double energy(const Configuration& at);
   static void add_forces(const Configuration& at, std::span<Vec3> forces);

@@ -51,12 +51,13 @@ Mat3 PackedTangent::frame_of(const Patch& patch) const {
 void PackedTangent::linearise(const Model& model, const Point& point) {
   shape_.find_frames(model, point.x);
   rotation_ = shape_.rotations();
-  for (std::size_t c = 0; c < cell_stiffness_.size(); ++c) {
+  parallel_for(static_cast<Index>(cell_stiffness_.size()), [&](Index i) {
+    const auto c = uz(i);
     double stiffness = model.cell_bulk[c] / model.cell_volume[c];
     if (!point.cell_stiffness.empty()) stiffness += point.cell_stiffness[c];
     const auto weight = static_cast<double>(layout_->cell_weight[c]);
     cell_stiffness_[c] = static_cast<float>(stiffness * weight * weight);
-  }
+  });
   viscous_rate_ = static_cast<float>(point.rate);
   if (point.tets == nullptr) shape_.compute(model, point.x, slot_force_);
   layout_->run_patches([&](Index p) {

@@ -46,7 +46,6 @@ struct Element {
 // sums, diagonals, sparsity, joined bodies) follows from for_each_element.
 //
 //   account                  where energy() is counted
-//   isotropic                whether B is a constant times the unit matrix, at every x
 //   energy(at)               W [J]
 //   add_forces(at, f)        f -= dW/dx [N] (nodes); on pinned nodes only if elastic
 //   for_each_element(at, tangent, visit)
@@ -56,7 +55,6 @@ struct Element {
 template <class T>
 concept Term = requires(const Configuration& at, std::span<Vec3> forces) {
   { T::account } -> std::convertible_to<Account>;
-  { T::isotropic } -> std::convertible_to<bool>;
   { T::energy(at) } -> std::same_as<double>;
   { T::add_forces(at, forces) } -> std::same_as<void>;
   T::for_each_element(at, Tangent::full, [](const Element&) {});

@@ -23,7 +23,6 @@ inline Vec3 tie_offset(const Tie& tie, std::span<const Vec3> x) {
 
 struct TieTerm {
   static constexpr Account account = Account::elastic;
-  static constexpr bool isotropic = true;
 
   static double energy(const Configuration& at) {
     double sum = 0.0;

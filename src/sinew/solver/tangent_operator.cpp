@@ -49,10 +49,11 @@ void TangentOperator::assemble(const Objective& objective, const Field& x, doubl
     point.cell_stiffness = objective.constraints->cell_stiffness();
   }
   material_.linearise(model, point);
-  for (std::size_t i = 0; i < own_.size(); ++i) {
+  parallel_for(model.node_count(), [&](Index n) {
+    const auto i = uz(n);
     const double own = (objective.inertia + objective.rate * model.drag[i]) * model.mass[i];
     own_[i] = model.inverse_mass[i] == 0.0 ? -1.0f : static_cast<float>(own);
-  }
+  });
   elements_.clear();
   node_.clear();
   weight_.clear();

@@ -48,7 +48,6 @@ class TangentOperator {
   std::vector<Index> node_;
   std::vector<float> weight_;
   std::vector<Mat3> outer_diagonal_;
-  std::vector<double> power_;  // scratch
 };
 
 }  // namespace sinew
