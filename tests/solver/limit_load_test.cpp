@@ -46,7 +46,9 @@ TEST(LimitLoad, OfABalloonIsThatOfItsShell) {
   const Model m = balloon();
   const Controls controls = initial_controls(m);
   State s = initial_state(m);
-  EXPECT_THROW(StaticSolver(m).solve(controls, 0.0, {}, s), Error);
+  StaticOptions without_search;
+  without_search.finds_limit_load = false;
+  EXPECT_THROW(StaticSolver(m).solve(controls, 0.0, without_search, s), Error);
   const LimitLoad limit = find_limit_load(m, controls, 0.0, {}, initial_state(m));
   EXPECT_GT(limit.rests, 0.2);
   EXPECT_LT(limit.fails, 0.5);

@@ -9,6 +9,7 @@ class global_control {
  public:
   enum parameter { max_allowed_parallelism };
   global_control(parameter, std::size_t) {}
+  static std::size_t active_value(parameter) { return 4; }  // the threads of parallel_for.h
 };
 
 }  // namespace tbb
