@@ -79,7 +79,7 @@ KeyTables make_tables() {
                  word("stepper", "\"verlet\"", all_words<StepperKind>()),
                  word("scheme", "\"tr-bdf2\"", all_words<Scheme>()),
                  word("precision", "\"single\"", all_words<Precision>()),
-                 number("tolerance", "", "0.01", {1e-12, 0.1}),
+                 number("tolerance", "", "1e-3", {1e-12, 0.1}),
                  number("budget_ms", "ms", "", positive),
                  {"dt", T::number_or_word, "s", "\"auto\"", {0.0, 1e6, true}, "auto"},
                  integer("substeps", "1", from_to(1, most_substeps)),

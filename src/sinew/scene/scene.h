@@ -266,10 +266,10 @@ struct Scene {
   GivenMeshes given;     // of a scene built in code
 };
 
-// scene.tolerance; without it 1e-6 for rest states and 0.01 for implicit steps, which leaves less
-// than 1 % of the motion (docs/methods/implicit.md).
+// scene.tolerance; without it 1e-6 for rest states and 1e-3 for implicit steps: 0.02 % of the
+// motion, the coarsest at which no body has gained energy (docs/methods/implicit.md).
 inline double tolerance_of(const Scene& scene) {
-  return scene.tolerance.value_or(scene.stepper == StepperKind::rest ? 1e-6 : 0.01);
+  return scene.tolerance.value_or(scene.stepper == StepperKind::rest ? 1e-6 : 1e-3);
 }
 
 // Reads a scene file; relative mesh paths start from its folder. `overrides` as for --set,

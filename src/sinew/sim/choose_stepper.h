@@ -13,15 +13,15 @@
 namespace sinew {
 
 // The cost of the parts of an implicit step, in Verlet steps in double precision on the same model.
-// Fitted to frames of the network law on W(4), W(8) and W(17), of 5 to 7 Verlet steps, which they
-// predict within 20 %. The choice uses counted work times these constants instead of wall time, so
-// a scene takes the same stepper on every machine.
+// Fitted to frames of the network law on W(4), W(8), W(17) and the liver, of 4 to 7 Verlet steps,
+// which they predict within a factor of 1.8 (docs/methods/auto.md). The choice uses counted work
+// times these constants instead of wall time, so a scene takes the same stepper on every machine.
 inline constexpr double step_cost = 2.0;           // start of its two solves, energy account
 inline constexpr double newton_cost = 1.5;         // forces, tangent, line search
 inline constexpr double single_newton_cost = 0.6;  // the same with forces in single precision
 inline constexpr double product_cost = 0.25;       // with the tangent, preconditioner included
-// The cost of a Verlet step in single precision, in those in double precision: 0.17 to 0.23 on W(4)
-// to W(17).
+// The cost of a Verlet step in single precision, in those in double precision: 0.12 to 0.35 on
+// W(4) to W(17) and the liver.
 inline constexpr double single_step_cost = 0.22;
 
 // Whether implicit steps suit the model: it has no contacts and no limits, which explicit steps
