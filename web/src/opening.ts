@@ -39,6 +39,7 @@ export class Opening {
 
   end(): void {
     this.pending = false;
+    this.button.blur(); // a hidden button would keep the keys
     this.element.hidden = true;
   }
 
