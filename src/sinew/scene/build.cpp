@@ -119,9 +119,11 @@ std::vector<PlacedBody> add_bodies(const Scene& scene, Model& model, BuildReport
     }
     add_body(model, spec);
     check_finite(model, body);
-    if (report != nullptr)
+    if (report != nullptr) {
       report->bodies.push_back({body.name, placed.source, placed.mesh.node_count(),
                                 placed.mesh.tet_count(), placed.warnings, placed.short_step});
+      report->specs.push_back(std::move(spec));
+    }
     bodies.push_back(std::move(placed));
   }
   set_start(bodies, model);

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/forces/assemble.h"
 #include "sinew/model/model.h"
 #include "sinew/scene/scene.h"
 #include "sinew/scene/short_step.h"
@@ -22,6 +23,7 @@ struct BuildReport {
     std::optional<ShortStep> short_step;
   };
   std::vector<Body> bodies;
+  std::vector<BodySpec> specs;        // what the Model was assembled from, for cuts (bodies)
   std::vector<std::string> warnings;  // about the start (scene/start_warnings.h), distances
 };
 

@@ -10,11 +10,12 @@
 #include "sinew/base/error.h"
 #include "sinew/io/file_io.h"
 #include "sinew/sim/bytes.h"
+#include "sinew/sim/cuts.h"
 
 namespace sinew {
 namespace {
 
-constexpr std::string_view magic = "SINEWCP9";
+constexpr std::string_view magic = "SINEWCPA";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>
@@ -87,6 +88,7 @@ bool fits(const RunState& run, std::size_t nodes) {
 std::string encode_run(std::uint64_t model_hash, const RunState& run) {
   ByteWriter w(magic);
   w.value(model_hash);
+  sim::write_cuts(w, run.cuts);
   visit(w, run);
   w.value(digest(w.bytes));
   return std::move(w.bytes);
@@ -112,11 +114,18 @@ RunState decode_run(std::string_view bytes, const std::string& name, std::uint64
            "restore the scene and mesh it was made with, or start the run again");
   }
   RunState run;
+  sim::read_cuts(r, run.cuts);
   visit(r, run);
-  if (!r.all_read() || !fits(run, nodes)) {
+  // With cuts, the number of nodes follows once they are applied: require_fit().
+  if (!r.all_read() || (run.cuts.empty() && !fits(run, nodes))) {
     reject(name, "the checkpoint is damaged", "start the run again");
   }
   return run;
+}
+
+void require_fit(const RunState& run, const Model& model) {
+  if (!fits(run, model.rest_position.size()))
+    reject("the saved state", "its cuts lead to another number of nodes", "start the run again");
 }
 
 void write_checkpoint(const std::filesystem::path& file, std::uint64_t model_hash,

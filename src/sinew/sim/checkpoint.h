@@ -13,10 +13,14 @@
 namespace sinew {
 
 // The checkpoint as bytes in memory. Decoding throws the errors of read_checkpoint; `name` stands
-// for the file in messages.
+// for the file in messages; model_hash and nodes are those of the model without the run's cuts.
 std::string encode_run(std::uint64_t model_hash, const RunState& run);
 RunState decode_run(std::string_view bytes, const std::string& name, std::uint64_t model_hash,
                     std::size_t nodes);
+
+// Throws Error(input) if the state is not one of the model, which has the run's cuts: a file can be
+// made by hand.
+void require_fit(const RunState& run, const Model& model);
 
 // Throws Error(io).
 void write_checkpoint(const std::filesystem::path& file, std::uint64_t model_hash,

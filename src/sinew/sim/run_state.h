@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "sinew/cut/cut_model.h"
 #include "sinew/model/state.h"
 #include "sinew/sim/run_counters.h"
 #include "sinew/solver/stepper.h"
@@ -19,6 +20,7 @@ struct FrameWork : RunCounters {
 
 struct RunState : RunCounters {
   State state;
+  std::vector<ModelCut> cuts;  // that lead from the scene's model to the one of the state
   StepperKind stepper = StepperKind::automatic;  // in use; automatic: not chosen yet
   std::string stepper_reason;         // reason for the choice; empty if the scene names it
   StepMemory memory;                  // of the stepper

@@ -16,7 +16,7 @@
 namespace sinew::sim {
 namespace {
 
-constexpr std::string_view magic = "SINEWST1";
+constexpr std::string_view magic = "SINEWST2";
 const std::string call = "restore()";
 
 // A path; one list of members for reading and writing.
@@ -49,8 +49,8 @@ void read_path(ByteReader& r, Path& p) {
 
 std::string World::save() const {
   ByteWriter w(magic);
-  w.value(model_hash_);
-  const std::string run = encode_run(model_hash_, run_);
+  w.value(base_hash_);
+  const std::string run = encode_run(base_hash_, run_);
   w.value(static_cast<std::uint64_t>(run.size()));
   w.bytes += run;
   w.value(clock_);
@@ -101,13 +101,13 @@ void World::restore(const std::string& bytes) {
 
   std::uint64_t hash = 0;
   r.value(hash);
-  if (hash != model_hash_)
+  if (hash != base_hash_)
     throw Error(ErrorKind::input, "the saved state belongs to another scene, mesh or material",
                 "restore it in a Simulation of the same scene, with the same obstacles and "
                 "materials",
                 {call, 0, 0});
   const std::size_t run_size = r.count(1);
-  RunState run = decode_run(r.text(run_size), call, model_hash_, model_->rest_position.size());
+  RunState run = decode_run(r.text(run_size), call, base_hash_, base_nodes_);
   double clock = 0.0;
   Vec3 gravity;
   r.value(clock);
@@ -130,7 +130,7 @@ void World::restore(const std::string& bytes) {
   };
   movers(obstacles, controls.obstacle_paths);
   movers(pins, controls.pin_paths);
-  for (std::size_t i = 0; i < obstacles.size(); ++i) let_pin_follow(controls, *model_, i);
+  const bool same_cuts = run.cuts == run_.cuts;
   for (Tool& tool : controls.tools) read_path(r, tool.path);
   std::uint64_t next_id = 0;
   r.value(next_id);
@@ -157,6 +157,8 @@ void World::restore(const std::string& bytes) {
     }
   }
   if (!r.all_read()) refuse_damaged();
+  if (!same_cuts) continue_with_cuts(run, controls);
+  for (std::size_t i = 0; i < obstacles.size(); ++i) let_pin_follow(controls, *model_, i);
 
   run_ = std::move(run);
   good_ = run_;
@@ -169,6 +171,24 @@ void World::restore(const std::string& bytes) {
   grabs_ = std::move(grabs);
   last_inverted_ = count_inverted(*model_, run_.state.position);
   ++changes_;
+}
+
+// Replaces the model by the one with the cuts of `run`.
+void World::continue_with_cuts(const RunState& run, const Controls& controls) {
+  arena_.run([&] {
+    Built b = build(source_, run.cuts);
+    require_fit(run, *b.model);
+    for (const Grab& grab : controls.grabs)
+      for (const Index node : grab.nodes)
+        if (node < 0 || node >= b.model->body_node_count()) refuse_damaged();
+    b.run = run;
+    b.controls->tools = controls_->tools;
+    b.stepping =
+        std::make_unique<Stepping>(options_of(source_.scene), *b.model, *b.controls, b.run);
+    b.obstacles = obstacles_;
+    grabs_.clear();
+    replace_by(std::move(b));
+  });
 }
 
 }  // namespace sinew::sim

@@ -194,11 +194,23 @@ bool Stepping::too_long(const RunState& run, double stable, double slack) const 
 // Adapts the length of the steps to the stable step if it was estimated again.
 void Stepping::watch(const Controls& controls, RunState& run) {
   const auto stable = stepper_->watch(run.step, controls, run.state, run.memory);
-  if (!stable) return;
-  run.smallest_stable_step = std::min(run.smallest_stable_step, *stable);
+  if (stable) adapt(*stable, run);
+}
+
+void Stepping::choose_step_again(const Controls& controls, RunState& run) {
+  const double stable = stepper_->begin(controls, run.state, run.memory).stable;
+  if (stable == no_limit) return;
+  if (run.steps_left > 0) return adapt(stable, run);
+  run.smallest_stable_step = std::min(run.smallest_stable_step, stable);
+  if (!options_.allow_unstable)
+    run.target_step = std::min(run.target_step, options_.safety * stable);
+}
+
+void Stepping::adapt(double stable, RunState& run) {
+  run.smallest_stable_step = std::min(run.smallest_stable_step, stable);
   const double longest = automatic() ? options_.interval : options_.given();
-  const double wish = std::min(options_.safety * *stable, longest);
-  if (too_long(run, *stable, estimate_slack)) {
+  const double wish = std::min(options_.safety * stable, longest);
+  if (too_long(run, stable, estimate_slack)) {
     // The margin is used up: shorten the rest of the frame.
     shorten(run, wish);
   } else if (wish > 1.25 * run.target_step || (wish == longest && wish > run.target_step)) {

@@ -59,6 +59,10 @@ class Stepping {
   // Not empty: a given step is longer than explicit steps that keep the energy, and is divided.
   std::string division(const RunState& run) const;
 
+  // Estimates the stable step of another model that the run continues with, and plans the rest of
+  // the frame by it.
+  void choose_step_again(const Controls& controls, RunState& run);
+
   // Continues the run at the time of its state, which was set from outside.
   void resume_at(RunState& run) const;
 
@@ -78,6 +82,7 @@ class Stepping {
   void finish_frame(RunState& run) const;
   void plan(RunState& run, double end, std::int64_t given_steps) const;
   void watch(const Controls& controls, RunState& run);
+  void adapt(double stable, RunState& run);
   bool one_step(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
   bool steps(const Controls& controls, RunState& run, const std::atomic<bool>* stop);
   void shorten(RunState& run, double step) const;

@@ -10,6 +10,7 @@
 #include "sinew/mesh/surface.h"
 #include "sinew/scene/overrides.h"
 #include "sinew/scene/parse.h"
+#include "sinew/sim/checkpoint.h"
 #include "sinew/sim/describe.h"
 #include "sinew/sim/mover.h"
 #include "sinew/sim/state_transfer.h"
@@ -62,12 +63,15 @@ SteppingOptions World::options_of(const Scene& scene) const {
   return out;
 }
 
-World::Built World::build(Source source) {
+World::Built World::build(Source source, const std::vector<ModelCut>& cuts) {
   Built b;
   b.source = std::move(source);
   b.model = std::make_unique<Model>(build_model(b.source.scene, &b.report));
-  b.hash = b.model->hash();
+  b.base_hash = b.hash = b.model->hash();
+  b.base_nodes = b.model->rest_position.size();
+  b.cut_bodies = whole_bodies(std::exchange(b.report.specs, {}));
   b.controls = initial_controls(*b.model);
+  if (!cuts.empty()) apply_cuts(b, cuts);
   return b;
 }
 
@@ -83,7 +87,10 @@ void World::replace_by(Built built) {
   evaluator_.reset();
   model_ = std::move(built.model);
   controls_ = std::move(built.controls);
+  base_hash_ = built.base_hash;
+  base_nodes_ = built.base_nodes;
   model_hash_ = built.hash;
+  cut_bodies_ = std::move(built.cut_bodies);
   run_ = std::move(built.run);
   warnings_ = warnings_of(source_.scene, report_);
   hold_grabs();
@@ -108,9 +115,13 @@ void World::note_model() {
 }
 
 void World::start(Source source) {
-  Built b = build(std::move(source));
+  Built b = build(std::move(source), {});
   if (options_.start) {
     b.run = options_.start(*b.model, b.report);
+    if (!b.run.cuts.empty()) {
+      apply_cuts(b, b.run.cuts);
+      require_fit(b.run, *b.model);
+    }
   } else {
     b.run.state = initial_state(*b.model);
   }
@@ -129,7 +140,9 @@ void World::start(Source source) {
 void World::reset() {
   const Busy busy(*this);
   arena_.run([&] {
-    Built b = build(source_);
+    Built b = build(source_, {});
+    undo_.clear();
+    redo_.clear();
     b.run.state = initial_state(*b.model);
     b.controls->gravity = controls_->gravity;
     b.stepping =
@@ -162,7 +175,8 @@ Scene World::current_scene() const {
 // Replaces the model by that of another source of the same bodies and pins. Grabs and tools do not
 // take part in the choice of the steps, because their stiffness is bounded by it.
 void World::rebuild(Source source, const std::string& replaced, Steps steps) {
-  Built b = build(std::move(source));
+  Built b = build(std::move(source), run_.cuts);
+  b.run.cuts = run_.cuts;
   b.controls->gravity = controls_->gravity;
   for (std::size_t i = 0; i < b.model->obstacles.size(); ++i) {
     const Obstacle& o = b.model->obstacles[i];
@@ -192,6 +206,8 @@ void World::rebuild(Source source, const std::string& replaced, Steps steps) {
   }
   b.stepping = std::make_unique<Stepping>(options, *b.model, *b.controls, b.run);
   if (steps == Steps::kept) b.run.stepper_reason = run_.stepper_reason;
+  undo_.clear();
+  redo_.clear();
   b.stepping->resume_at(b.run);
   b.controls->tools = controls_->tools;
   b.controls->grabs = controls_->grabs;
@@ -282,6 +298,7 @@ void World::choose_stepper_at(const State& state) {
   run.state = state;
   run.state.reactions = {};
   run.step = run_.step;
+  run.cuts = run_.cuts;
   Controls released = *controls_;
   released.grabs.clear();
   auto stepping = std::make_unique<Stepping>(options_of(source_.scene), *model_, released, run);

@@ -24,6 +24,7 @@
 #include "sinew/scene/build.h"
 #include "sinew/scene/document.h"
 #include "sinew/scene/scene.h"
+#include "sinew/sim/cuts.h"
 #include "sinew/sim/stepping.h"
 
 namespace sinew::sim {
@@ -110,6 +111,18 @@ class World {
   // Returns to the start of the scene with the current values. Grabs and tools are removed, and
   // moved objects follow the scene's paths again.
   void reset();
+
+  // ---- cuts (cuts.cpp) ----
+  // Cuts the bodies along a surface, at the current positions. new_undo: undo() takes back this cut
+  // alone; else together with the one before. Error(input) for a surface that is not finite,
+  // Error(usage) for an unknown body.
+  CutResult cut(const CutRequest& request, bool new_undo = true);
+  // Returns to the moment before the last cut; redo() to the moment of the undo(). A change that
+  // rebuilds the model forgets both.
+  void undo();
+  void redo();
+  bool can_undo() const { return !undo_.empty(); }
+  bool can_redo() const { return !redo_.empty(); }
 
   // Chooses the steps again without another model and continues; counters start again.
   void choose_steps();
@@ -200,7 +213,10 @@ class World {
     Source source;
     BuildReport report;
     std::unique_ptr<const Model> model;
+    std::uint64_t base_hash = 0;  // of the model without cuts, and
+    std::size_t base_nodes = 0;   // its nodes
     std::uint64_t hash = 0;
+    std::vector<CutBody> cut_bodies;
     std::optional<Controls> controls;
     std::unique_ptr<Stepping> stepping;
     RunState run;
@@ -223,7 +239,11 @@ class World {
   };
 
   SteppingOptions options_of(const Scene& scene) const;
-  static Built build(Source source);
+  static Built build(Source source, const std::vector<ModelCut>& cuts);
+  static void apply_cuts(Built& built, const std::vector<ModelCut>& cuts);
+  ModelCut plan(const CutRequest& request) const;
+  void continue_with_cuts(const RunState& run, const Controls& controls);
+  CutResult cut_now(const CutRequest& request, bool new_undo);
   void replace_by(Built built);
   void start(Source source);
   void rebuild(Source source, const std::string& replaced, Steps steps);
@@ -250,7 +270,12 @@ class World {
   Source source_;
   BuildReport report_;
   std::unique_ptr<const Model> model_;
+  // Of the model without cuts, which a saved state belongs to.
+  std::uint64_t base_hash_ = 0;
+  std::size_t base_nodes_ = 0;
   std::uint64_t model_hash_ = 0;
+  std::vector<CutBody> cut_bodies_;       // of the model, for the next cut
+  std::vector<std::string> undo_, redo_;  // saved states
   std::unique_ptr<Stepping> stepping_;
   std::optional<Controls> controls_;  // of the model; empty before the first one
   RunState run_;

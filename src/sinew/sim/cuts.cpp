@@ -1,0 +1,207 @@
+// Cuts of a World: the next version of its Model, with the run carried over; undo and redo.
+#include "sinew/sim/cuts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "sinew/base/error.h"
+#include "sinew/cut/relax.h"
+#include "sinew/forces/terms.h"
+#include "sinew/mesh/quality.h"
+#include "sinew/mesh/surface.h"
+#include "sinew/sim/checkpoint.h"
+#include "sinew/sim/world.h"
+#include "sinew/solver/stable_step.h"
+
+namespace sinew::sim {
+namespace {
+
+constexpr std::size_t most_undone = 100;
+
+Box bounds_of(std::span<const Vec3> x) {
+  Box box;
+  for (const Vec3& p : x) box.add(p);
+  return box;
+}
+
+double smallest_angle(const Model& model) {
+  double least = std::numbers::pi;
+  for (const Tet& t : model.tets) {
+    const auto& X = model.rest_position;
+    for (const double a : dihedral_angles({X[uz(t[0])], X[uz(t[1])], X[uz(t[2])], X[uz(t[3])]}))
+      least = std::min(least, a);
+  }
+  return least;
+}
+
+Index count_parts(const Model& model) {
+  return connected_components(std::span<const Tet>(model.tets), model.node_count()).count;
+}
+
+double total_area(const ModelCut& cut, std::span<const CutBody> bodies) {
+  double area = 0.0;
+  for (std::size_t b = 0; b < cut.size(); ++b) {
+    std::vector<Vec3> X = bodies[b].spec.mesh.nodes;  // of the body before the cut
+    for (const EdgeSplit& s : cut[b].splits) X.push_back(s.at(X));
+    area += surface_area(X, cut[b].faces);
+  }
+  return area;
+}
+
+Energies energies_of(const Model& model, const Controls& controls, const State& state) {
+  ForceEvaluator forces(model, Precision::double_);
+  return measure_energies(model, controls, state, forces.evaluate(controls, state).force);
+}
+
+}  // namespace
+
+void write_cuts(ByteWriter& w, const std::vector<ModelCut>& cuts) {
+  w.value(static_cast<std::uint64_t>(cuts.size()));
+  for (const ModelCut& cut : cuts) {
+    w.value(static_cast<std::uint64_t>(cut.size()));
+    for (const BodyCut& body : cut) {
+      w.array(body.splits);
+      w.array(body.faces);
+    }
+  }
+}
+
+void read_cuts(ByteReader& r, std::vector<ModelCut>& cuts) {
+  cuts.resize(r.count(sizeof(std::uint64_t)));
+  for (ModelCut& cut : cuts) {
+    cut.resize(r.count(2 * sizeof(std::uint64_t)));
+    for (BodyCut& body : cut) {
+      r.array(body.splits);
+      r.array(body.faces);
+    }
+  }
+}
+
+ModelCut World::plan(const CutRequest& request) const {
+  ModelCut cut(model_->bodies.size());
+  bool known = request.body.empty();
+  for (std::size_t b = 0; b < model_->bodies.size(); ++b) {
+    const Body& body = model_->bodies[b];
+    if (!request.body.empty() && request.body != body.name) continue;
+    known = true;
+    const auto first = static_cast<std::size_t>(body.nodes.begin);
+    const auto count = uz(body.nodes.size());
+    const std::span<const Vec3> rest = cut_bodies_[b].spec.mesh.nodes;
+    const std::span<const Vec3> x =
+        request.at_rest ? rest : std::span<const Vec3>(run_.state.position).subspan(first, count);
+    const CutSurface surface(request.surface, bounds_of(x));
+    cut[b] = plan_cut({rest, x, cut_bodies_[b].spec.mesh.tets, cut_bodies_[b].node_size}, surface);
+  }
+  if (!known) {
+    std::string names;
+    for (const Body& body : model_->bodies) names += (names.empty() ? "" : ", ") + body.name;
+    throw Error(ErrorKind::usage, fmt::format("the scene has no body '{}' to cut", request.body),
+                fmt::format("it has: {}", names));
+  }
+  return cut;
+}
+
+CutResult World::cut(const CutRequest& request, bool new_undo) {
+  const Busy busy(*this);
+  CutResult result;
+  arena_.run([&] { result = cut_now(request, new_undo); });
+  return result;
+}
+
+CutResult World::cut_now(const CutRequest& request, bool new_undo) {
+  CutResult result;
+  const ModelCut planned = plan(request);
+  for (const BodyCut& body : planned) result.opened += static_cast<Index>(body.faces.size());
+  result.parts_before = result.parts = count_parts(*model_);
+  result.smallest_angle_before = result.smallest_angle = smallest_angle(*model_);
+  result.stable_step_before = result.stable_step = run_.memory.stable_step;
+  if (result.opened == 0) return result;
+  const Energies before = energies_of(*model_, *controls_, run_.state);
+  result.elastic_before = before.elastic;
+  result.area = total_area(planned, cut_bodies_);
+  result.new_nodes = -model_->node_count();
+  result.new_tets = -model_->tet_count();
+  std::string saved = new_undo || undo_.empty() ? save() : std::string();
+
+  CutModel next = cut_model(*model_, cut_bodies_, planned);
+  Built b;
+  b.source = source_;
+  b.report = report_;
+  b.base_hash = base_hash_;
+  b.base_nodes = base_nodes_;
+  b.hash = next.model.hash();
+  b.run = run_;
+  b.run.cuts.push_back(planned);
+  b.run.state = transfer_state(next.change, *model_, next.model, run_.state);
+  b.controls = *controls_;
+  for (Grab& grab : b.controls->grabs)
+    for (Index& node : grab.nodes) node = next.change.node[uz(node)];
+  b.obstacles = obstacles_;
+  b.cut_bodies = std::move(next.bodies);
+  b.model = std::make_unique<Model>(std::move(next.model));
+  b.stepping = std::make_unique<Stepping>(options_of(source_.scene), *b.model, *b.controls, b.run);
+  b.stepping->choose_step_again(*b.controls, b.run);
+  const double h =
+      b.run.memory.stable_step < no_limit
+          ? b.run.memory.stable_step
+          : find_stable_step(*b.model, *b.controls, b.run.state.position, b.stepping->forces())
+                .step;
+  ForceEvaluator forces(*b.model, Precision::double_);
+  relax(*b.model, *b.controls, before.elastic, h, forces, b.run.state);
+  keep_angular_momentum(next.change, *model_, run_.state, *b.model, b.run.state);
+  const Energies after = measure_energies(*b.model, *b.controls, b.run.state,
+                                          forces.evaluate(*b.controls, b.run.state).force);
+  EnergyAccount& account = b.run.state.energy;
+  const double gained = after.total() - before.total();
+  (gained > 0.0 ? account.work_in : account.dissipated) += std::abs(gained);
+
+  std::vector<std::string> warnings = std::move(warnings_);
+  replace_by(std::move(b));
+  warnings_ = std::move(warnings);
+  if (!saved.empty()) {
+    undo_.push_back(std::move(saved));
+    if (undo_.size() > most_undone) undo_.erase(undo_.begin());
+  }
+  redo_.clear();
+  result.elastic = after.elastic;
+  result.new_nodes += model_->node_count();
+  result.new_tets += model_->tet_count();
+  result.parts = count_parts(*model_);
+  result.smallest_angle = smallest_angle(*model_);
+  result.stable_step = run_.memory.stable_step;
+  return result;
+}
+
+void World::apply_cuts(Built& built, const std::vector<ModelCut>& cuts) {
+  for (const ModelCut& cut : cuts) {
+    CutModel next = cut_model(*built.model, built.cut_bodies, cut);
+    built.model = std::make_unique<Model>(std::move(next.model));
+    built.cut_bodies = std::move(next.bodies);
+  }
+  built.hash = built.model->hash();
+  built.controls = initial_controls(*built.model);
+}
+
+void World::undo() {
+  if (undo_.empty())
+    throw Error(ErrorKind::usage, "there is no cut to undo",
+                "undo() takes back cuts since the last change of the model, at most 100");
+  std::string now = save();
+  restore(undo_.back());
+  redo_.push_back(std::move(now));
+  undo_.pop_back();
+}
+
+void World::redo() {
+  if (redo_.empty())
+    throw Error(ErrorKind::usage, "there is no cut to redo", "redo() follows undo()");
+  std::string now = save();
+  restore(redo_.back());
+  undo_.push_back(std::move(now));
+  redo_.pop_back();
+}
+
+}  // namespace sinew::sim
