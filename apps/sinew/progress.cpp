@@ -189,6 +189,18 @@ std::string format_table(const Summary& s, std::span<const std::string> told) {
     row("pin", fmt::format("{} bears {:.4g} N: ({:.4g}, {:.4g}, {:.4g}) N", p.name, p.force.norm(),
                            p.force.x(), p.force.y(), p.force.z()));
   }
+  for (const sim::CutRecord& cut : s.cuts) {
+    const sim::CutResult& r = cut.result;
+    row("cut", fmt::format("{} by {:.4g} s: {} faces, {:.4g} cm2; {}{} nodes and {} tets new; "
+                           "smallest angle {:.3g} degrees (was {:.3g})",
+                           cut.name.empty() ? "(host)" : cut.name, cut.time, grouped(r.opened),
+                           1e4 * r.area,
+                           r.parts > r.parts_before
+                               ? fmt::format("{} pieces (were {}); ", r.parts, r.parts_before)
+                               : std::string(),
+                           grouped(r.new_nodes), grouped(r.new_tets), r.smallest_angle / radians,
+                           r.smallest_angle_before / radians));
+  }
   row("state hash", s.state_hash);
   if (!s.look_for.empty()) t += fmt::format("\nLook for: {}\n", s.look_for);
   for (const std::string& w : s.warnings) {

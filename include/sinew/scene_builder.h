@@ -200,6 +200,32 @@ struct ObstacleDescription {
   std::optional<Point> pivot = {};
 };
 
+// A surface that cuts tissue: one of `plane`, `disc`, `blade`, `mesh` and `arrays`. Coordinates are
+// those of the world at the time of the cut, or those of the rest shape.
+struct CutDescription {
+  struct Plane {  // all through
+    Point point = {0.0, 0.0, 0.0}, normal = {0.0, 1.0, 0.0};
+  };
+  struct Disc {
+    Point center = {0.0, 0.0, 0.0}, normal = {0.0, 1.0, 0.0};
+    double radius = 0.0;  // [m]
+  };
+  struct Edge {         // the edge of a blade
+    double time = 0.0;  // [s]
+    Point heel = {0.0, 0.0, 0.0}, tip = {0.0, 0.0, 0.0};
+  };
+  std::string name = {};
+  std::string body = {};            // empty: every body that it meets; of a blade: the only one
+  std::optional<double> time = {};  // [s] when the scene cuts; edges of a blade have their own
+  bool at_rest = false;             // coordinates of the rest shape
+  std::optional<Plane> plane = {};
+  std::optional<Disc> disc = {};
+  std::vector<Edge> blade = {};              // two or more: what lies between them is cut
+  std::string mesh = {};                     // a surface file, or
+  std::optional<SurfaceArrays> arrays = {};  // triangles, of any orientation
+  std::optional<double> scale = {};
+};
+
 struct GroundDescription {
   std::optional<Point> point = {}, normal = {};
   std::optional<double> restitution = {}, friction = {};
@@ -250,6 +276,7 @@ class SINEW_API SceneBuilder {
   SceneBuilder& add_force(const ForceDescription& force);
   SceneBuilder& add_probe(const ProbeDescription& probe);
   SceneBuilder& add_obstacle(const ObstacleDescription& obstacle);
+  SceneBuilder& add_cut(const CutDescription& cut);
 
   // The scene as TOML without the arrays, for inspection.
   std::string toml() const;

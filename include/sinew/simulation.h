@@ -63,6 +63,7 @@ using ObstacleHandle = Handle<struct ObstacleKind>;
 using PinHandle = Handle<struct PinKind>;
 using GrabHandle = Handle<struct GrabKind>;
 using MaterialHandle = Handle<struct MaterialKind>;
+using BladeHandle = Handle<struct BladeKind>;
 
 struct SimulationOptions {
   // Number of threads, from 1 to 1024. 0: the TBB arena of the calling thread.
@@ -93,6 +94,7 @@ enum class EventKind {
   diverged,         // the simulation returned to the end of an earlier frame
   stepper_changed,  // text: the stepper and the reason
   step_shortened,   // the body became stiffer; count: reductions of the step within a frame
+  parted,           // a cut parted a body; count: pieces that the bodies have now
 };
 
 // An event that the host did not request.
@@ -101,6 +103,17 @@ struct Event {
   double time = 0.0;  // of the simulation [s]
   std::int64_t count = 0;
   std::string text;
+};
+
+// What a cut did. Nothing changed if opened is 0.
+struct CutReport {
+  Index opened = 0;   // faces
+  double area = 0.0;  // of one side of the cut, at rest [m2]
+  Index new_nodes = 0, new_tets = 0;
+  Index parts_before = 0, parts = 0;                         // connected pieces of all bodies
+  double smallest_angle_before = 0.0, smallest_angle = 0.0;  // dihedral, at rest [rad]
+  double stable_step_before = 0.0, stable_step = 0.0;  // [s]; infinite unless steps are explicit
+  double elastic_before = 0.0, elastic = 0.0;          // energy [J]; never more than before
 };
 
 // Everything that decides how a simulation continues, in memory. bytes() may be stored, and read by
@@ -226,6 +239,30 @@ class SINEW_API Simulation {
   Point force(GrabHandle grab) const;  // on the tissue [N]
   void release(GrabHandle grab);
   std::vector<GrabHandle> grabs() const;  // those not released
+
+  // ---- cuts (docs/methods/cutting.md) ----
+
+  // Cuts tissue along a surface, at once; `name` and `time` are not used. Mass, momentum, angular
+  // momentum and rest volume stay; nodes and tets keep their numbers within their body, and new
+  // ones come last. All arrays change. Error(input) for a surface that is not valid.
+  CutReport cut(const CutDescription& cut);
+  // A blade that cuts a body (empty: the only one) as it moves. Its path is kept in the rest shape.
+  BladeHandle add_blade(std::string_view body = {});
+  // Draws the blade on to an edge from heel to tip [m], through the tissue where it is now. The
+  // first edge of a stroke cuts nothing.
+  CutReport move(BladeHandle blade, const Point& heel, const Point& tip);
+  void lift(BladeHandle blade);  // ends the stroke
+  void remove(BladeHandle blade);
+  // Returns to the moment before the last cut() or stroke, with its bits; redo() to the moment of
+  // the undo(). At most 100; a change that builds the model again forgets them. Both lift blades.
+  // Error(usage) if there is none.
+  void undo();
+  void redo();
+  bool can_undo() const;
+  bool can_redo() const;
+  // Changes with every cut, undo() and redo(): tets(), surface() and the number of nodes may be
+  // others.
+  std::int64_t topology() const;
 
   // ---- materials and gravity ----
 

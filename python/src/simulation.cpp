@@ -97,6 +97,8 @@ std::string_view word_of_event(EventKind kind) {
       return "stepper_changed";
     case EventKind::step_shortened:
       return "step_shortened";
+    case EventKind::parted:
+      return "parted";
   }
   return "";
 }

@@ -95,7 +95,7 @@ TEST(Overrides, NameTheirMistakes) {
   EXPECT_EQ(error("baem.young=1"),
             "--set baem.young=1: nothing in the scene is named 'baem'; did you mean 'beam'?\n"
             "  remedy: a key begins with a table of the scene (output.fps) or with the name of a "
-            "body, pin, attachment, distance, force, probe or obstacle (beam.young)");
+            "body, pin, attachment, distance, force, probe, obstacle or cut (beam.young)");
   EXPECT_EQ(error("body.baem.young=1"),
             "--set body.baem.young=1: the scene has no body 'baem'; did you mean 'beam'?\n"
             "  remedy: --set changes what the scene file has");

@@ -240,3 +240,38 @@ test("on a phone the options are a sheet, and the ball follows a finger", () =>
     await touch("touchEnd");
     await until(page, () => window.sinew.state.status.ball === null);
   }));
+
+test("the scalpel cuts along its way, and a cut can be undone and made again", () =>
+  visit(browser, liver.url, { width: 1280, height: 720 }, async (page) => {
+    await reset(page);
+    await page.getByRole("button", { name: "Cut with a scalpel" }).click();
+    await until(page, () => !document.querySelector("#scalpel-card").hidden);
+    const before = await nodes(page);
+    const camera = await state(page, "camera");
+    const { at } = await nodeInFront(page);
+    await page.mouse.move(at[0] - 40, at[1] - 60);
+    await page.mouse.down();
+    await until(page, () => window.sinew.state.cutting);
+    await page.mouse.move(at[0] + 30, at[1] + 80, { steps: 12 });
+    await until(page, () => window.sinew.state.status.cut_area > 1e-4);
+    await page.mouse.up();
+    await until(page, () => !window.sinew.state.cutting && window.sinew.state.status.can_undo);
+    await until(page, (n) => window.sinew.state.rest.length / 3 > n, before);
+    assert.deepEqual(await state(page, "camera"), camera); // neither the drag nor the new mesh turned it
+    await until(page, () => /cm² cut/.test(document.querySelector("#cut-done").textContent));
+    const after = await nodes(page);
+    await picture(page, "scalpel");
+    await page.getByRole("button", { name: "Undo the last cut" }).click();
+    await until(page, (n) => window.sinew.state.rest.length / 3 === n, before);
+    assert.equal((await state(page, "status")).can_undo, false);
+    await page.keyboard.press("Shift+Z");
+    await until(page, (n) => window.sinew.state.rest.length / 3 === n, after);
+    await run(page, true); // and it goes on
+    await until(page, () => window.sinew.state.time > 0.3, null, 120);
+    await picture(page, "scalpel-open");
+    await reset(page);
+    await until(page, (n) => window.sinew.state.rest.length / 3 === n, before);
+    assert.equal((await state(page, "status")).cut_area, 0);
+    await page.keyboard.press("t"); // the next tool: from the start
+    await until(page, () => document.querySelector("#scalpel-card").hidden);
+  }));

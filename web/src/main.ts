@@ -28,7 +28,7 @@ class App {
     (c) => this.send(c),
   );
   private readonly stage = this.world.stage;
-  private readonly tools = new Tools(this.world.hands, this.world.ball);
+  private readonly tools = new Tools(this.world.hands, this.world.ball, this.world.scalpel, (c) => this.send(c));
   private readonly cut = new CutControl((c) => this.send(c), () => this.stage.towardsViewer());
   private readonly options = new ViewOptions({
     send: (c) => this.send(c),
@@ -91,7 +91,7 @@ class App {
 
   /** State for tests. */
   get state() {
-    const { tissue, hands, ball, spheres, shown } = this.world;
+    const { tissue, hands, ball, scalpel, spheres, shown } = this.world;
     return {
       scene: this.scene,
       status: this.status,
@@ -108,6 +108,7 @@ class App {
       pulling: hands.pulling,
       pins: hands.pins,
       pushing: ball.pushing,
+      cutting: scalpel.cutting,
       ball: spheres.ballAt,
       obstacles: spheres.obstaclesAt,
       drawn: this.framesDrawn,
@@ -147,7 +148,7 @@ class App {
     document.querySelector("#ui")!.append(
       h("header", {}, h("div", { class: "heading" }, this.title, this.lookFor, this.bar.element), corner),
       this.panel.element, this.options.element, this.scale.element,
-      h("footer", {}, this.around.hint.element, this.limit, this.tools.card, transport),
+      h("footer", {}, this.around.hint.element, this.limit, ...this.tools.cards, transport),
       this.lost, this.busy.element, this.help.element, ...this.around.elements);
     this.role.hidden = true;
     this.busy.element.hidden = true;
@@ -206,6 +207,7 @@ class App {
     this.panel.showStatus(s);
     this.compare.showStatus(s);
     this.world.hear(s);
+    this.tools.hear(s);
     const slow = s.running && s.rate > 0 && s.rate < SLOW * s.time_scale;
     this.speed.className = `badge ${!s.running ? "" : slow ? "slow" : "good"}`;
     if (!s.running || s.rate === 0) this.speed.textContent = s.running ? "…" : "paused";
@@ -272,8 +274,9 @@ class App {
       s: () => this.send(event.shiftKey ? { type: "step", frame: true } : { type: "step" }),
       r: () => this.reset(),
       t: () => this.tools.next(),
-      "[": () => this.world.ball.deepen(-1),
-      "]": () => this.world.ball.deepen(1),
+      "[": () => this.tools.deepen(-1),
+      "]": () => this.tools.deepen(1),
+      z: () => (event.shiftKey ? this.tools.makeAgain() : this.tools.takeBack()),
       escape: () => this.world.releaseAll(),
       c: () => this.options.nextColor(event.shiftKey ? -1 : 1),
       w: () => this.options.toggle("wireframe"),

@@ -115,6 +115,10 @@ export interface Status {
   obstacles: SphereStatus[]; // in the order of the scene's obstacles
   ball: SphereStatus | null;
   distance: { largest: number; mean: number } | null; // from the compared body [m]
+  can_undo: boolean; // a cut
+  can_redo: boolean;
+  cut_area: number; // of all cuts, one side [m2]
+  pieces: number; // of the bodies after the last cut; 0: nothing was cut
   error: string;
   errors: number;
 }
@@ -162,6 +166,9 @@ export type Command =
   | { type: "drag"; hand: number; point: Vec }
   | { type: "release"; hand: number }
   | { type: "ball"; point?: Vec; radius?: number }
+  | { type: "blade"; node?: number; heel?: Vec; tip?: Vec }
+  | { type: "undo" }
+  | { type: "redo" }
   | { type: "cut"; normal?: Vec; offset?: number }
   | { type: "springs"; value: boolean }
   | { type: "compare"; law?: string }

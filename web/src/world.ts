@@ -7,6 +7,7 @@ import { Hands } from "./hands";
 import type { Shown } from "./options";
 import { Picker } from "./picker";
 import type { Command, Frame, SceneInfo, Status, Topology, Vec } from "./protocol";
+import { Scalpel } from "./scalpel";
 import { Spheres } from "./spheres";
 import { cornersOf, Stage } from "./stage";
 import { Tissue } from "./tissue";
@@ -20,6 +21,7 @@ export class World {
   readonly spheres: Spheres;
   readonly hands: Hands;
   readonly ball: BallTool;
+  readonly scalpel: Scalpel;
   /** The bounds of the whole body at rest, as far as they are known [m]. */
   readonly box = new THREE.Box3();
   shown: Frame | null = null;
@@ -40,14 +42,16 @@ export class World {
     const picker = new Picker(this.stage, this.tissue);
     this.hands = new Hands(this.stage, this.tissue, picker, labels, send);
     this.ball = new BallTool(this.stage, picker, send);
+    this.scalpel = new Scalpel(this.stage, this.tissue, picker, send);
   }
 
   /** Whether this browser has the controls. */
   setControls(have: boolean): void {
-    this.hands.mayPull = this.ball.mayPush = have;
+    this.hands.mayPull = this.ball.mayPush = this.scalpel.mayCut = have;
     if (have) return;
     this.hands.forget();
     this.ball.forget();
+    this.scalpel.forget();
   }
 
   showScene(scene: SceneInfo, arrangement: Arrangement): void {
@@ -154,12 +158,14 @@ export class World {
   releaseAll(): void {
     this.hands.releaseAll();
     this.ball.release();
+    this.scalpel.lift();
   }
 
   /** Removes all grabs: another scene, a reset, or loss of the controls. */
   forget(): void {
     this.hands.forget();
     this.ball.forget();
+    this.scalpel.forget();
     this.spheres.drop();
   }
 
@@ -167,6 +173,7 @@ export class World {
   draw(now: number): boolean {
     this.hands.update();
     this.ball.update(now);
+    this.scalpel.update();
     this.spheres.update(this.shown?.time ?? 0, now, this.tissue.compared.shift);
     this.tissue.compared.update(this.stage, this.tissue.box);
     if (this.hands.held.size > 0) this.stage.changed();

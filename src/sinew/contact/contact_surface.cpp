@@ -129,20 +129,33 @@ void build_contact_surface(Model& model) {
   const bool rigid = std::any_of(model.obstacles.begin(), model.obstacles.end(),
                                  [](const Obstacle& o) { return o.mesh() != nullptr; });
   if (!model.body_contact && !rigid) return;
-  model.surface.body_count = static_cast<Index>(model.bodies.size());
   const Surface all = build_surface(model.tets, model.node_count());
+  // The pieces that a cut leaves touch each other like bodies.
+  const Components pieces =
+      connected_components(std::span<const Tet>(model.tets), model.node_count());
   for (const Body& body : model.bodies) {
-    std::vector<Triangle> triangles;
-    std::vector<double> heights;
-    for (std::size_t t = 0; t < all.triangles.size(); ++t) {
-      if (!body.tets.contains(all.tets[t])) continue;
-      const double volume = signed_volume(model.rest_position, model.tets[uz(all.tets[t])]);
-      const double base = area(model.rest_position, all.triangles[t]);
-      triangles.push_back(all.triangles[t]);
-      heights.push_back(base > 0.0 ? 3.0 * volume / base : 0.0);
+    std::vector<Index> ids;
+    for (Index t = body.tets.begin; t < body.tets.end; ++t) {
+      const Index piece = model.version > 0 ? pieces.of[uz(t)] : 0;
+      if (std::find(ids.begin(), ids.end(), piece) == ids.end()) ids.push_back(piece);
     }
-    add_owner(model.rest_position, triangles, heights, model.surface);
+    const Index first = model.surface.owner_count();
+    for (const Index piece : ids) {
+      std::vector<Triangle> triangles;
+      std::vector<double> heights;
+      for (std::size_t t = 0; t < all.triangles.size(); ++t) {
+        if (!body.tets.contains(all.tets[t])) continue;
+        if (model.version > 0 && pieces.of[uz(all.tets[t])] != piece) continue;
+        const double volume = signed_volume(model.rest_position, model.tets[uz(all.tets[t])]);
+        const double base = area(model.rest_position, all.triangles[t]);
+        triangles.push_back(all.triangles[t]);
+        heights.push_back(base > 0.0 ? 3.0 * volume / base : 0.0);
+      }
+      add_owner(model.rest_position, triangles, heights, model.surface);
+    }
+    model.surface.body_owners.push_back({first, model.surface.owner_count()});
   }
+  model.surface.body_count = model.surface.owner_count();
   for (const Obstacle& o : model.obstacles) {
     if (o.mesh() != nullptr) add_rigid_contact_surface(model, o.mesh()->triangles);
   }

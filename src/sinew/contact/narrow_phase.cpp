@@ -120,7 +120,8 @@ bool NarrowPhase::slit(Index slot, Index t, double at_rest) const {
   const Vec3& n = rest_plane_[uz(t)].normal;
   if (!(rest_normal_[uz(slot)].dot(n) < -0.5)) return false;
   const Vec3& a = rest_[uz(surface_.triangles[uz(t)][0])];
-  return n.dot(rest_[uz(surface_.nodes[uz(slot)])] - a) > 0.5 * at_rest;
+  const double rounding = 1e-9 * surface_.triangle_size[uz(t)];  // the lips of a cut have no gap
+  return n.dot(rest_[uz(surface_.nodes[uz(slot)])] - a) > 0.5 * at_rest - rounding;
 }
 
 bool NarrowPhase::node_too_far(Index slot, Index t, double distance) const {

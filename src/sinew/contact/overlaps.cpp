@@ -39,6 +39,12 @@ double distance_to_surface(const Vec3& p, const std::vector<Vec3>& x, const Cont
   return std::sqrt(least2);
 }
 
+// The parts of the owners of a body, which follow each other.
+Range of_body(const std::vector<Range>& ranges, const ContactSurface& s, Index body) {
+  const Range owners = s.body_owners[uz(body)];
+  return {ranges[uz(owners.begin)].begin, ranges[uz(owners.end - 1)].end};
+}
+
 // Bodies that coincide have all their surface nodes on each other's surface: the middles of the
 // tets of a, or of a sample of them, show how deep they are.
 void look_inside(const Model& model, const std::vector<Vec3>& x, const BoxTree& tree,
@@ -58,7 +64,8 @@ void look_inside(const Model& model, const std::vector<Vec3>& x, const BoxTree& 
       return inside(middle, x, model.tets[uz(b.tets.begin + k)]);
     });
     if (!in) continue;
-    const double depth = distance_to_surface(middle, x, s, s.owner_triangles[uz(overlap.b)]);
+    const double depth =
+        distance_to_surface(middle, x, s, of_body(s.owner_triangles, s, overlap.b));
     if (depth <= overlap.depth) continue;
     overlap.depth = depth;
     overlap.deepest = tet[0];
@@ -85,14 +92,14 @@ std::vector<Overlap> find_overlaps(const Model& model, const std::vector<Vec3>& 
     bounds.push_back(all);
   }
   std::vector<Index> near;
-  for (Index a = 0; a < s.body_count; ++a) {
-    for (Index b = 0; b < s.body_count; ++b) {
+  for (Index a = 0; a < static_cast<Index>(s.body_owners.size()); ++a) {
+    for (Index b = 0; b < static_cast<Index>(s.body_owners.size()); ++b) {
       if (a == b || !bounds[uz(a)].overlaps(bounds[uz(b)])) continue;
       const Index first = model.bodies[uz(b)].tets.begin;
       Overlap overlap;
       overlap.a = a;
       overlap.b = b;
-      const Range slots = s.owner_nodes[uz(a)];
+      const Range slots = of_body(s.owner_nodes, s, a);
       for (Index slot = slots.begin; slot < slots.end; ++slot) {
         const Index node = s.nodes[uz(slot)];
         near.clear();
@@ -101,7 +108,8 @@ std::vector<Overlap> find_overlaps(const Model& model, const std::vector<Vec3>& 
           return inside(x[uz(node)], x, model.tets[uz(first + t)]);
         });
         if (!in) continue;
-        const double depth = distance_to_surface(x[uz(node)], x, s, s.owner_triangles[uz(b)]);
+        const double depth =
+            distance_to_surface(x[uz(node)], x, s, of_body(s.owner_triangles, s, b));
         if (depth < tolerance) continue;
         ++overlap.nodes;
         if (overlap.deepest < 0 || depth > overlap.depth) {

@@ -201,4 +201,91 @@ std::vector<Triangle> opening_faces(const Patch& patch, std::vector<Triangle> fa
   return faces;
 }
 
+namespace {
+
+// A piece around a tet that opened faces cut off; empty if it is not smaller than `least` or may go
+// on beyond the patch.
+std::vector<Index> crumb_at(const Patch& patch, std::span<const Triangle> faces, Index tet,
+                            std::span<const double> volume, std::span<const char> inside,
+                            double least) {
+  std::vector<Index> piece = {tet};
+  double sum = 0.0;
+  for (std::size_t next = 0; next < piece.size(); ++next) {
+    const Index t = piece[next];
+    sum += volume[uz(t)];
+    if (sum >= least || inside[uz(t)] == 0) return {};
+    for (Index corner = 0; corner < 4; ++corner) {
+      const Index other = patch.neighbour(t, corner);
+      if (other < 0 || std::find(piece.begin(), piece.end(), other) != piece.end()) continue;
+      const Triangle face = sorted_face(patch.tets()[uz(t)], uz(corner));
+      if (!std::binary_search(faces.begin(), faces.end(), face)) piece.push_back(other);
+    }
+  }
+  std::sort(piece.begin(), piece.end());
+  return piece;
+}
+
+// Whether a way leads from one tet to the other, past no opened face and not through the piece.
+// Only near tets are looked at.
+bool on_one_side(const Patch& patch, std::span<const Triangle> faces, std::span<const Index> piece,
+                 Index from, Index to) {
+  constexpr std::size_t most = 60;
+  std::vector<Index> reached = {from};
+  for (std::size_t next = 0; next < reached.size() && reached.size() < most; ++next) {
+    if (reached[next] == to) return true;
+    for (Index corner = 0; corner < 4; ++corner) {
+      const Index other = patch.neighbour(reached[next], corner);
+      if (other < 0 || std::binary_search(piece.begin(), piece.end(), other) ||
+          std::find(reached.begin(), reached.end(), other) != reached.end())
+        continue;
+      const Triangle face = sorted_face(patch.tets()[uz(reached[next])], uz(corner));
+      if (!std::binary_search(faces.begin(), faces.end(), face)) reached.push_back(other);
+    }
+  }
+  return std::find(reached.begin(), reached.end(), to) != reached.end();
+}
+
+}  // namespace
+
+std::vector<Triangle> without_crumbs(const Patch& patch, std::vector<Triangle> faces,
+                                     std::span<const Vec3> rest, std::span<const double> volume,
+                                     std::span<const char> inside, std::span<const double> least) {
+  struct Side {
+    Triangle face;
+    Index beyond;  // the tet on the other side
+    double area;
+  };
+  for (Index t = 0; t < static_cast<Index>(patch.tets().size()); ++t) {
+    bool opened = false;
+    for (Index corner = 0; corner < 4 && !opened; ++corner)
+      opened = patch.neighbour(t, corner) >= 0 &&
+               std::binary_search(faces.begin(), faces.end(),
+                                  sorted_face(patch.tets()[uz(t)], uz(corner)));
+    if (!opened) continue;
+    const std::vector<Index> piece = crumb_at(patch, faces, t, volume, inside, least[uz(t)]);
+    if (piece.empty()) continue;
+    std::vector<Side> sides;
+    for (const Index part : piece) {
+      for (Index corner = 0; corner < 4; ++corner) {
+        const Index other = patch.neighbour(part, corner);
+        if (other < 0 || std::binary_search(piece.begin(), piece.end(), other)) continue;
+        const Triangle f = sorted_face(patch.tets()[uz(part)], uz(corner));
+        const Vec3& a = rest[uz(f[0])];
+        sides.push_back({f, other, (rest[uz(f[1])] - a).cross(rest[uz(f[2])] - a).norm()});
+      }
+    }
+    if (sides.empty()) continue;
+    const Side largest = *std::max_element(
+        sides.begin(), sides.end(), [](const Side& a, const Side& b) { return a.area < b.area; });
+    std::vector<Triangle> closed;
+    for (const Side& side : sides)
+      if (on_one_side(patch, faces, piece, largest.beyond, side.beyond))
+        closed.push_back(side.face);
+    std::erase_if(faces, [&](const Triangle& f) {
+      return std::find(closed.begin(), closed.end(), f) != closed.end();
+    });
+  }
+  return faces;
+}
+
 }  // namespace sinew

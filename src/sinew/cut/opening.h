@@ -36,4 +36,11 @@ std::vector<Index> pinched_nodes(const Patch& patch, std::span<const Triangle> f
 std::vector<Triangle> opening_faces(const Patch& patch, std::vector<Triangle> faces,
                                     std::span<const double> volume);
 
+// The faces with every piece that is cut off, but is smaller than `least` (tets of the patch), left
+// attached to its larger neighbour: a blade that comes by twice would leave crumbs of single tets.
+// rest: X [m] (nodes). inside: whether all neighbours of the tet are in the patch (its tets).
+std::vector<Triangle> without_crumbs(const Patch& patch, std::vector<Triangle> faces,
+                                     std::span<const Vec3> rest, std::span<const double> volume,
+                                     std::span<const char> inside, std::span<const double> least);
+
 }  // namespace sinew

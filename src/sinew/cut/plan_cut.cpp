@@ -18,11 +18,12 @@ constexpr std::array<std::array<std::size_t, 2>, 6> tet_edges = {
     {{0, 1}, {0, 2}, {0, 3}, {1, 2}, {1, 3}, {2, 3}}};
 
 // The tets whose boxes a triangle of the surface comes near.
-std::vector<Index> tets_near(const CutMesh& mesh, const CutSurface& surface) {
+std::vector<Index> tets_near(const CutMesh& mesh, const CutSurface& surface, const Box* within) {
   std::vector<Index> found;
   for (std::size_t t = 0; t < mesh.tets.size(); ++t) {
     Box box;
     for (const Index node : mesh.tets[t]) box.add(mesh.position[uz(node)]);
+    if (within != nullptr && !within->overlaps(box)) continue;
     if (surface.near(box)) found.push_back(static_cast<Index>(t));
   }
   return found;
@@ -137,22 +138,22 @@ double least_height(std::span<const Vec3> x, const Tet& tet) {
 // A cut in the making.
 class Plan {
  public:
-  Plan(const CutMesh& mesh, const CutSurface& surface, const CutOptions& options)
+  Plan(const CutMesh& mesh, const CutSurface& surface, const CutOptions& options, const Box* within)
       : mesh_(mesh),
         surface_(surface),
         options_(options),
         on_(mesh.rest.size(), 0),
         off_(mesh.rest.size(), 0) {
-    const std::vector<Index> near = tets_near(mesh, surface);
-    if (near.empty()) return;
-    crossed_ = crossed_edges(mesh, surface, near);
+    near_ = tets_near(mesh, surface, within);
+    if (near_.empty()) return;
+    crossed_ = crossed_edges(mesh, surface, near_);
     // The longest edge first: the diagonals of the faces that two splits cross become short.
     std::sort(crossed_.begin(), crossed_.end(), [](const CrossedEdge& a, const CrossedEdge& b) {
       return std::tuple(-a.length, a.a, a.b) < std::tuple(-b.length, b.a, b.b);
     });
     snap(mesh, crossed_, options.snap, on_);
     choose_edges();
-    around_ = with_neighbours(mesh, near);
+    around_ = with_neighbours(mesh, near_);
   }
 
   BodyCut make() {
@@ -163,6 +164,7 @@ class Plan {
       cut.faces = faces_on(*patch_, x_, on_after_, surface_);
       if (resolve_pinches(cut)) continue;
       cut.faces = opening_faces(*patch_, std::move(cut.faces), volume_);
+      close_crumbs(cut);
       if (!leave_edges_without_faces(cut)) return cut;
     }
   }
@@ -261,6 +263,24 @@ class Plan {
     return true;
   }
 
+  // Leaves pieces attached that are smaller than a few tets.
+  void close_crumbs(BodyCut& cut) const {
+    constexpr double least = 0.3;  // of the cube of the tets' size
+    std::vector<char> inside;
+    std::vector<double> smallest;
+    for (Index t = 0; t < static_cast<Index>(patch_->tets().size()); ++t) {
+      const Index parent = patch_->parent(t);
+      inside.push_back(std::binary_search(near_.begin(), near_.end(), parent));
+      double size = 0.0;
+      for (const Index node : mesh_.tets[uz(parent)]) size += 0.25 * mesh_.size[uz(node)];
+      smallest.push_back(least * size * size * size);
+    }
+    std::vector<Triangle> faces =
+        without_crumbs(*patch_, cut.faces, rest_, volume_, inside, smallest);
+    if (faces.size() != cut.faces.size())
+      cut.faces = opening_faces(*patch_, std::move(faces), volume_);
+  }
+
   // Edges before the front are split in vain.
   bool leave_edges_without_faces(const BodyCut& cut) {
     std::vector<char> opened(edges_.size(), 0);
@@ -284,7 +304,8 @@ class Plan {
   static constexpr int most_rounds = 20;
   std::vector<CrossedEdge> crossed_;
   std::vector<CrossedEdge> edges_;  // to split
-  std::vector<Index> around_;       // tets to look at
+  std::vector<Index> near_;         // the surface: tets that may be cut
+  std::vector<Index> around_;       // those and their neighbours
   std::vector<char> on_;            // the surface (nodes before)
   std::vector<char> off_;           // must not be on it (nodes before)
   int rounds_ = 0;
@@ -313,9 +334,10 @@ std::vector<double> size_at_nodes(std::span<const Vec3> rest, std::span<const Te
   return sum;
 }
 
-BodyCut plan_cut(const CutMesh& mesh, const CutSurface& surface, const CutOptions& options) {
+BodyCut plan_cut(const CutMesh& mesh, const CutSurface& surface, const CutOptions& options,
+                 const Box* within) {
   if (surface.empty()) return {};
-  return Plan(mesh, surface, options).make();
+  return Plan(mesh, surface, options, within).make();
 }
 
 }  // namespace sinew

@@ -42,7 +42,10 @@ struct CutMesh {
 // surface. After that no tet has nodes on both sides, and the faces between tets of different sides
 // whose nodes all lie on the surface are opened. At the border of the surface, the front of the cut
 // follows the faces that it passes completely. A surface that folds within a tet is not followed.
-BodyCut plan_cut(const CutMesh& mesh, const CutSurface& surface, const CutOptions& options = {});
+// With `within`, only tets whose boxes overlap it are cut: a blade that moves on has cut the
+// others.
+BodyCut plan_cut(const CutMesh& mesh, const CutSurface& surface, const CutOptions& options = {},
+                 const Box* within = nullptr);
 
 // The mean length of the edges at each node [m] (nodes): CutMesh::size of a mesh without cuts.
 std::vector<double> size_at_nodes(std::span<const Vec3> rest, std::span<const Tet> tets);

@@ -5,6 +5,7 @@
 #include "sinew/model/controls.h"
 #include "sinew/model/model.h"
 #include "sinew/model/state.h"
+#include "sinew/model/topology_change.h"
 
 namespace sinew {
 
@@ -17,7 +18,10 @@ namespace sinew {
 // `elastic_before` [J]; one or two do in most cases. h [s] is the stable step, so the fastest mode
 // ends in one step. Inner forces move no centre of mass. Returns the elastic energy [J]; it is
 // higher than before if 100 steps do not suffice. `forces`: of the model, in double precision.
-double relax(const Model& model, const Controls& controls, double elastic_before, double h,
-             ForceEvaluator& forces, State& state);
+//
+// Where bodies touch each other, the lips do not pass through each other: the two nodes of a place
+// that was doubled move apart, or stay together.
+double relax(const Model& model, const Controls& controls, const TopologyChange& change,
+             double elastic_before, double h, ForceEvaluator& forces, State& state);
 
 }  // namespace sinew

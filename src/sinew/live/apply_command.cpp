@@ -81,6 +81,7 @@ void Session::adopt(Simulation simulation) {
   running_ = false;
   grabs_ = {};
   ball_ = {};
+  blade_.reset();
   other_.reset();
   compare_.clear();
   ++opened_;
@@ -100,6 +101,7 @@ void Session::show(const Cut& cut, bool springs) {
   cut_ = cut;
   springs_ = springs;
   topology_ = std::make_shared<Topology>(make_topology(model(), ++revision_, cut_, springs_));
+  shown_ = world().topology();
   if (other_) other_->topology_ = topology_;
   remember_parameters();
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <variant>
 
@@ -91,6 +92,21 @@ struct MoveBall {
 
 struct RemoveBall {};
 
+// The scalpel: a straight edge from heel to tip that cuts as it moves (sim::World::move). With a
+// node it begins a stroke, in that node's body, and cuts nothing yet.
+struct MoveBlade {
+  std::optional<Index> node;                     // of the surface (Topology)
+  Vec3 heel = Vec3::Zero(), tip = Vec3::Zero();  // [m]
+};
+
+// Ends the stroke.
+struct LiftBlade {};
+
+// Take back strokes and other cuts, and make them again.
+struct Undo {};
+struct Redo {};
+
+// The plane that the view is clipped at.
 struct SetCut {
   Cut cut;
 };
@@ -117,8 +133,9 @@ struct HandBack {
   std::function<void(std::string)> done;
 };
 
-using Command = std::variant<Play, Cancel, Advance, Reset, Load, Open, SetMaterial, SetStepping,
-                             SetGravity, SetTimeScale, SetQuantity, Grab, Drag, Release, MoveBall,
-                             RemoveBall, SetCut, SetSprings, SetCompare, SaveState, HandBack>;
+using Command =
+    std::variant<Play, Cancel, Advance, Reset, Load, Open, SetMaterial, SetStepping, SetGravity,
+                 SetTimeScale, SetQuantity, Grab, Drag, Release, MoveBall, RemoveBall, MoveBlade,
+                 LiftBlade, Undo, Redo, SetCut, SetSprings, SetCompare, SaveState, HandBack>;
 
 }  // namespace sinew::live

@@ -73,9 +73,12 @@ struct Status {
   std::vector<Vec3> probes;             // their displacements [m], in the scene's order
   std::vector<SphereStatus> obstacles;  // in the scene's order
   std::optional<SphereStatus> ball;
-  std::optional<Distance> distance;  // if bodies are compared
-  std::string error;                 // reason for the stop, or for the last refusal; empty: none
-  std::uint32_t errors = 0;          // counts errors, so that a repeated one is noticed
+  std::optional<Distance> distance;         // if bodies are compared
+  bool can_undo = false, can_redo = false;  // cuts
+  double cut_area = 0.0;                    // of all cuts, one side [m2]
+  std::int64_t pieces = 0;                  // of the bodies, after the last cut; 0: nothing was cut
+  std::string error;         // reason for the stop, or for the last refusal; empty: none
+  std::uint32_t errors = 0;  // counts errors, so that a repeated one is noticed
 };
 
 // The current values that may be changed during the simulation.

@@ -30,13 +30,16 @@ bool replaces(const Command& later, const Command& earlier) {
     const auto& other = std::get<SetMaterial>(earlier);
     return set->body == other.body && set->region == other.region && set->key == other.key;
   }
+  if (const auto* blade = std::get_if<MoveBlade>(&later)) {
+    return !blade->node && !std::get<MoveBlade>(earlier).node;
+  }
   return std::holds_alternative<SetGravity>(later) || std::holds_alternative<SetQuantity>(later) ||
          std::holds_alternative<SetTimeScale>(later) || std::holds_alternative<Cancel>(later);
 }
 
 bool is_of_hand(const Command& command) {
   return std::holds_alternative<Grab>(command) || std::holds_alternative<Drag>(command) ||
-         std::holds_alternative<Release>(command);
+         std::holds_alternative<Release>(command) || std::holds_alternative<MoveBlade>(command);
 }
 
 Clock::duration seconds(double s) {

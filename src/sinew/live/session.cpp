@@ -75,6 +75,7 @@ void Session::apply(const Command& command) {
   if (!std::holds_alternative<Drag>(command)) error_.clear();
   std::visit([&](const auto& c) { execute(c); }, command);
   if (other_) forward_to_compared(command);
+  follow_cuts();
 }
 
 void Session::report(const Error& error) {
@@ -153,12 +154,14 @@ void Session::remember_parameters() {
 void Session::take_step() {
   steps(Clock::time_point::max(), nullptr, true);
   catch_up(Clock::time_point::max(), nullptr);
+  follow_cuts();
 }
 
 bool Session::advance(Clock::time_point deadline, const std::atomic<bool>* interrupted) {
   if (!frame_finished_) frame_finished_ = steps(deadline, interrupted, false);
   if (!frame_finished_ || !catch_up(deadline, interrupted)) return false;
   frame_finished_ = false;
+  follow_cuts();
   grabs_.follow(world(), size());
   ball_.follow(world(), world().stepping().frame_interval(), size());
   keep_pace();
@@ -272,6 +275,10 @@ Status Session::status() {
   }
   s.ball = ball_.status(world());
   if (other_) s.distance = distance_between(pair_.mine, pair_.others, model().body_node_count());
+  s.can_undo = world().can_undo();
+  s.can_redo = world().can_redo();
+  for (const sim::CutRecord& cut : run.cut_log) s.cut_area += cut.result.area;
+  s.pieces = run.cut_log.empty() ? 0 : run.cut_log.back().result.parts;
   s.error = error_;
   s.errors = errors_;
   return s;

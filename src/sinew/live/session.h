@@ -90,6 +90,10 @@ class Session {
   void execute(const Release& c);
   void execute(const MoveBall& c);
   void execute(const RemoveBall& c);
+  void execute(const MoveBlade& c);
+  void execute(const LiftBlade& c);
+  void execute(const Undo& c);
+  void execute(const Redo& c);
   void execute(const SetCut& c);
   void execute(const SetSprings& c);
   void execute(const SetCompare& c);
@@ -109,6 +113,8 @@ class Session {
   SteppingOptions options_for(const Scene& scene) const;
   void remember_parameters();
   void show(const Cut& cut, bool springs);
+  void follow_cuts();
+  void lift_blade();
   void let_go();
   void forward_to_compared(const Command& command);
   bool catch_up(Clock::time_point deadline, const std::atomic<bool>* interrupted);
@@ -130,6 +136,8 @@ class Session {
   std::shared_ptr<const Parameters> parameters_;
   Grabs grabs_;
   Ball ball_;
+  std::optional<BladeHandle> blade_;
+  std::int64_t shown_ = -1;  // World::topology() of topology_
   Cut cut_;
   bool springs_ = false;
   Quantity quantity_ = Quantity::displacement;

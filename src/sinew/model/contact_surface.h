@@ -9,8 +9,8 @@
 
 namespace sinew {
 
-// Nodes and triangles are stored owner by owner. An owner is a body (its index) or, from
-// bodies.size() on, a rigid mesh. Lengths are those of the rest shape.
+// Nodes and triangles are stored owner by owner. An owner is a body, a piece of a body that was
+// cut, or a rigid mesh. Lengths are those of the rest shape.
 struct ContactSurface {
   std::vector<Index> nodes;           // node ids, ascending (nodes)
   std::vector<double> node_size;      // mean size of the triangles around it [m] (nodes)
@@ -27,6 +27,7 @@ struct ContactSurface {
   std::vector<Range> owner_nodes;  // ranges of `nodes` (owners)
   std::vector<Range> owner_triangles;  // of `triangles` (owners)
   std::vector<Range> owner_edges;      // of `edges` (owners)
+  std::vector<Range> body_owners;      // owners: one, or the pieces after a cut (bodies)
   Index body_count = 0;                // owners from here on are rigid
 
   bool empty() const { return triangles.empty(); }

@@ -108,15 +108,16 @@ std::vector<double> node_stretch(const Model& model, const std::vector<Vec3>& x)
   return stretch;
 }
 
-Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, const RunState& run)
-    : model_(model),
+Recorder::Recorder(const Scene& scene, std::shared_ptr<const Model> model, fs::path folder,
+                   const RunState& run)
+    : model_(std::move(model)),
       scene_(scene.name),
       folder_(std::move(folder)),
       vtu_(scene.output.vtu),
       encoding_(scene.output.encoding),
-      cells_(vtu_ ? io::format_vtu_cells(model.tets, {}, encoding_) : std::string()) {
+      cells_(vtu_ ? io::format_vtu_cells(model_->tets, {}, encoding_) : std::string()) {
   const std::size_t rows = run.frame_times.size();
-  probes_ = open_table(folder_ / "probes.csv", probe_header(model), rows);
+  probes_ = open_table(folder_ / "probes.csv", probe_header(*model_), rows);
   energy_ = open_table(folder_ / "energy.csv", energy_header, rows);
   frames_ = open_table(folder_ / "frames.csv", frames_header, rows);
   std::error_code ignored;
@@ -126,34 +127,40 @@ Recorder::Recorder(const Scene& scene, const Model& model, fs::path folder, cons
   }
 }
 
-void Recorder::record(const Controls& controls, const RunState& run, const Energies& e,
-                      const std::vector<Vec3>& force, ContactFinder* finder) {
+void Recorder::record(std::shared_ptr<const Model> model, const Controls& controls,
+                      const RunState& run, const Energies& e, const std::vector<Vec3>& force,
+                      ContactFinder* finder) {
+  if (model != model_) {
+    wait_for_frame();
+    model_ = std::move(model);
+    if (vtu_) cells_ = io::format_vtu_cells(model_->tets, {}, encoding_);
+  }
   if (vtu_) write_frame(run, force);
 
   const std::vector<Vec3>& x = run.state.position;
   std::string row = fmt::format("{}", run.state.time);
   const auto add = [&](const Vec3& v) { row += fmt::format(",{},{},{}", v.x(), v.y(), v.z()); };
-  for (const ProbeReading& p : read_probes(model_, x)) {
+  for (const ProbeReading& p : read_probes(*model_, x)) {
     add(p.position);
     add(p.displacement);
   }
-  for (const ObstacleReading& o : read_obstacles(model_, controls, run.state, finder)) {
+  for (const ObstacleReading& o : read_obstacles(*model_, controls, run.state, finder)) {
     add(o.center);
     add(o.force);
     add(o.torque);
     row += fmt::format(",{},{}", o.travel.norm(), against_travel(o));
   }
-  for (const PinReading& p : read_pins(model_, controls, run.state, force)) {
+  for (const PinReading& p : read_pins(*model_, controls, run.state, force)) {
     add(p.force);
     add(p.torque);
   }
   add_row(probes_, folder_ / "probes.csv", row);
 
-  const StretchRange range = measure_stretch(model_, x);
+  const StretchRange range = measure_stretch(*model_, x);
   add_row(energy_, folder_ / "energy.csv",
           fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{}", run.state.time, run.step, e.kinetic,
                       e.elastic, e.gravity, e.contact, e.dissipated, e.work_in, e.total(),
-                      volume_ratio(model_, x), range.stretch, range.compress, run.contacts));
+                      volume_ratio(*model_, x), range.stretch, range.compress, run.contacts));
   const FrameWork& w = run.work;
   add_row(frames_, folder_ / "frames.csv",
           fmt::format("{},{},{:.4f},{},{},{},{:.4g},{}", run.frame_times.size() - 1, run.state.time,
@@ -167,7 +174,7 @@ void Recorder::write_frame(RunState run, const std::vector<Vec3>& force) {
   not_synced_.push_back(folder_ / file);
   entries_.push_back({run.frame_times.back(), file});
   auto write = [this, file, force, run = std::move(run)] {
-    io::write_file(folder_ / file, format_frame(model_, run, force, encoding_, cells_));
+    io::write_file(folder_ / file, format_frame(*model_, run, force, encoding_, cells_));
     io::write_pvd(folder_ / (scene_ + ".pvd"), entries_);
   };
   if (threads_allowed() == 1) return write();

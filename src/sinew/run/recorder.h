@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <future>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -22,12 +23,13 @@ class Recorder {
  public:
   // `folder` must exist. A resumed run (run.frame_times not empty) keeps the rows of the frames in
   // its checkpoint and drops later ones; Error(input) if some of them are missing.
-  Recorder(const Scene& scene, const Model& model, std::filesystem::path folder,
+  Recorder(const Scene& scene, std::shared_ptr<const Model> model, std::filesystem::path folder,
            const RunState& run);
 
-  // Writes the current state as the last frame of run.frame_times. `force`: the sum of all terms at
-  // the state [N] (nodes). `finder`: null if nothing can touch.
-  void record(const Controls& controls, const RunState& run, const Energies& energies,
+  // Writes the current state as the last frame of run.frame_times. `model`: the one of the state, a
+  // later version of the first one after a cut. `force`: the sum of all terms at the state [N]
+  // (nodes). `finder`: null if nothing can touch.
+  void record(std::shared_ptr<const Model> model, const Controls& controls, const RunState& run, const Energies& energies,
               const std::vector<Vec3>& force, ContactFinder* finder);
 
   // Waits until everything written so far is on the disk. Throws Error(io), also for a frame that
@@ -38,12 +40,12 @@ class Recorder {
   void write_frame(RunState run, const std::vector<Vec3>& force);
   void wait_for_frame();
 
-  const Model& model_;
+  std::shared_ptr<const Model> model_;
   std::string scene_;  // its name, which is part of the file names
   std::filesystem::path folder_;
   bool vtu_;
   io::VtuEncoding encoding_;
-  std::string cells_;                              // encoded once, because all frames have the same
+  std::string cells_;                              // encoded once for all frames of a model
   std::vector<io::PvdEntry> entries_;              // of the collection
   std::vector<std::filesystem::path> not_synced_;  // frames
   std::ofstream probes_;

@@ -89,7 +89,7 @@ class Runner {
                                         inputs_of(world_.scene()),
                                         document_with_base(world_.scene())));
       }
-      recorder_.emplace(world_.scene(), world_.model(), options_.out, run_);
+      recorder_.emplace(world_.scene(), world_.shared_model(), options_.out, run_);
     }
     if (!resumed_) {
       run_.start_energy =
@@ -180,7 +180,8 @@ class Runner {
     const Energies e = measure_energies(world_.model(), world_.controls(), run_.state, f);
     run_.peak_energy = std::max(run_.peak_energy, e.largest_entry());
     run_.peak_drift = std::max(run_.peak_drift, std::abs(e.total() - run_.start_energy));
-    if (recorder_) recorder_->record(world_.controls(), run_, e, f, world_.finder());
+    if (recorder_)
+      recorder_->record(world_.shared_model(), world_.controls(), run_, e, f, world_.finder());
     // A rest state has no motion to account for.
     if (run_.stepper != StepperKind::rest && !world_.scene().allow_unstable)
       refuse_made_energy(e, run_);
@@ -191,7 +192,7 @@ class Runner {
     if (!recorder_) return;
     recorder_->sync();
     write_run_checkpoint(options_.out / checkpoint_name, world_.scene().document,
-                         world_.model().hash(), run_);
+                         world_.base_hash(), run_);
   }
 
   void report(const Progress& progress) const {

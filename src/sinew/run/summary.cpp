@@ -129,6 +129,7 @@ Summary summarize(const Scene& scene, const Model& model, const Controls& contro
   s.probes = read_probes(model, x);
   s.obstacles = read_obstacles(model, controls, run.state, finder);
   s.pins = read_pins(model, controls, run.state, force);
+  s.cuts = run.cut_log;
   return s;
 }
 
@@ -179,6 +180,27 @@ std::string crushed_warning(const Model& model, const std::vector<Vec3>& x) {
   return {};
 }
 
+namespace {
+
+nlohmann::ordered_json to_json(const sim::CutRecord& cut) {
+  const sim::CutResult& r = cut.result;
+  const auto step = [](double h) {
+    return std::isfinite(h) ? nlohmann::ordered_json(h) : nlohmann::ordered_json();
+  };
+  return {{"name", cut.name},
+          {"time", cut.time},
+          {"faces", r.opened},
+          {"area", r.area},
+          {"new_nodes", r.new_nodes},
+          {"new_tets", r.new_tets},
+          {"pieces", {r.parts_before, r.parts}},
+          {"smallest_angle", {r.smallest_angle_before / radians, r.smallest_angle / radians}},
+          {"stable_step", {step(r.stable_step_before), step(r.stable_step)}},
+          {"elastic", {r.elastic_before, r.elastic}}};
+}
+
+}  // namespace
+
 nlohmann::ordered_json to_json(const Summary& s) {
   nlohmann::ordered_json bodies = nlohmann::ordered_json::array();
   nlohmann::ordered_json laws = nlohmann::ordered_json::object();
@@ -209,6 +231,8 @@ nlohmann::ordered_json to_json(const Summary& s) {
   nlohmann::ordered_json pins = nlohmann::ordered_json::object();
   for (const PinReading& p : s.pins)
     pins[p.name] = {{"force", vec(p.force)}, {"torque", vec(p.torque)}};
+  nlohmann::ordered_json cuts = nlohmann::ordered_json::array();
+  for (const sim::CutRecord& cut : s.cuts) cuts.push_back(to_json(cut));
   nlohmann::ordered_json json = {
       {"version", version()},
       {"status", word_of(s.status)},
@@ -254,6 +278,7 @@ nlohmann::ordered_json to_json(const Summary& s) {
       {"probes", probes},
       {"obstacles", obstacles},
       {"pins", pins},
+      {"cuts", cuts},
       {"warnings", s.warnings}};
   for_each_counter(s, [&](const CounterField& field, const auto& value) {
     if (field.key.empty()) return;

@@ -74,6 +74,7 @@ struct Summary : RunCounters {
   std::vector<ProbeReading> probes;
   std::vector<ObstacleReading> obstacles;
   std::vector<PinReading> pins;
+  std::vector<sim::CutRecord> cuts;
   std::vector<std::string> warnings;
 
   double realtime_factor() const { return wall_seconds > 0.0 ? sim_seconds / wall_seconds : 0.0; }

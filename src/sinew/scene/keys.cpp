@@ -95,6 +95,7 @@ KeyTables make_tables() {
                  other("force", T::table),
                  other("probe", T::table),
                  other("obstacle", T::table),
+                 other("cut", T::table),
                  other("ground", T::table),
                  other("contact", T::table),
                  other("output", T::table),
@@ -246,6 +247,28 @@ KeyTables make_tables() {
                     number("restitution", "", "0", from_to(0, 1)),
                     {"stiffness", T::number_or_word, "N/m3", "", positive, "soft"},
                 }};
+  t.cut = {"cut",
+           "[cut.NAME]",
+           {
+               text("body"),
+               number("time", "s", "0", not_negative),
+               boolean("at_rest", "false"),
+               other("plane", T::table),
+               other("disc", T::table),
+               other("blade", T::tables),
+               text("mesh"),
+               number("scale", "m", "1", positive),
+           }};
+  t.disc = {"disc",
+            "a disc",
+            {point("center", "m"), point("normal", ""), number("radius", "m", "", positive)}};
+  t.blade_edge = {"blade_edge",
+                  "an edge of a blade",
+                  {
+                      number("time", "s", "0", not_negative),
+                      point("heel", "m", "", from_to(-1e9, 1e9)),
+                      point("tip", "m", "", from_to(-1e9, 1e9)),
+                  }};
   t.ground = {"ground",
               "[ground]",
               {
@@ -300,9 +323,9 @@ const Key* KeyTable::find(std::string_view key) const {
 }
 
 std::vector<const KeyTable*> KeyTables::all() const {
-  return {&scene, &body,     &material,   &region,  &motion,     &key_frame, &select,
-          &box,   &sphere,   &half_space, &pin,     &attachment, &distance,  &force,
-          &probe, &obstacle, &ground,     &contact, &output};
+  return {&scene,  &body,       &material,   &region,     &motion,   &key_frame, &select, &box,
+          &sphere, &half_space, &pin,        &attachment, &distance, &force,     &probe,  &obstacle,
+          &cut,    &disc,       &blade_edge, &ground,     &contact,  &output};
 }
 
 const KeyTables& key_tables() {

@@ -60,7 +60,7 @@ struct KeyTable {
 // The tables by their content.
 struct KeyTables {
   KeyTable scene, body, material, region, motion, key_frame, select, box, sphere, half_space, pin,
-      attachment, distance, force, probe, obstacle, ground, contact, output;
+      attachment, distance, force, probe, obstacle, cut, disc, blade_edge, ground, contact, output;
 
   std::vector<const KeyTable*> all() const;
 };

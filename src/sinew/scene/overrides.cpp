@@ -13,8 +13,8 @@ namespace sinew {
 namespace {
 
 // The tables whose entries have names, the body first: `NAME.key` means a body's key if one has it.
-constexpr std::array<std::string_view, 7> named_tables = {
-    "body", "pin", "attachment", "distance", "force", "probe", "obstacle"};
+constexpr std::array<std::string_view, 8> named_tables = {
+    "body", "pin", "attachment", "distance", "force", "probe", "obstacle", "cut"};
 
 using KeyPath = std::vector<std::string>;
 
@@ -78,7 +78,7 @@ class Override {
           ErrorKind::input,
           fmt::format("nothing in the scene is named '{}'{}", first, did_you_mean(first, names)),
           "a key begins with a table of the scene (output.fps) or with the name of a body, "
-          "pin, attachment, distance, force, probe or obstacle (beam.young)",
+          "pin, attachment, distance, force, probe, obstacle or cut (beam.young)",
           where_);
     }
     if (holders.size() > 1 && holders.front() != "body")

@@ -120,6 +120,7 @@ Scene parse_root(const DocValue& document) {
   parse_named(root, "force", scene.forces, with_bodies(parse_force));
   parse_named(root, "probe", scene.probes, with_bodies(parse_probe));
   parse_named(root, "obstacle", scene.obstacles, parse_obstacle);
+  parse_named(root, "cut", scene.cuts, with_bodies(parse_cut));
   refuse_shared_columns(scene, root);
   if (const DocValue* ground = root.table("ground")) scene.ground = parse_ground(*ground);
   if (const DocValue* contact = root.table("contact")) scene.contact = parse_contact(*contact);

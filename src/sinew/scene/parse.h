@@ -21,6 +21,7 @@ SceneDistance parse_distance(const std::string& name, const DocValue& value,
 SceneForce parse_force(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneProbe parse_probe(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneObstacle parse_obstacle(const std::string& name, const DocValue& value);
+SceneCut parse_cut(const std::string& name, const DocValue& value, const BodyNames& bodies);
 SceneGround parse_ground(const DocValue& value);
 SceneContact parse_contact(const DocValue& value);
 SceneOutput parse_output(const DocValue& value);
@@ -33,6 +34,8 @@ std::string read_scene_text(const std::filesystem::path& file, std::string_view 
 
 // Throws if the table lacks a required key.
 void require(const Reader& reader, std::string_view key);
+// A half-space, or a plane, by a point and a normal.
+Selection::HalfSpace parse_half_space(const DocValue& value, const std::string& name);
 // The selection under `key` of the reader's table, which must exist.
 Selection parse_selection(const Reader& reader, const std::string& key);
 // The keys path, smooth and pivot.

@@ -32,16 +32,6 @@ Selection::Sphere parse_sphere(const DocValue& value, const std::string& name) {
   return sphere;
 }
 
-Selection::HalfSpace parse_half_space(const DocValue& value, const std::string& name) {
-  const Reader reader(value, name, {&key_tables().half_space});
-  require(reader, "point");
-  require(reader, "normal");
-  Selection::HalfSpace half{Vec3::Zero(), Vec3::Zero()};
-  reader.point("point", half.point);
-  half.normal = parse_direction(reader, "normal", Vec3::Zero());
-  return half;
-}
-
 KeyFrame parse_key_frame(const DocValue& value, const std::string& name) {
   const Reader reader(value, name, {&key_tables().key_frame});
   require(reader, "time");
@@ -54,6 +44,16 @@ KeyFrame parse_key_frame(const DocValue& value, const std::string& name) {
 }
 
 }  // namespace
+
+Selection::HalfSpace parse_half_space(const DocValue& value, const std::string& name) {
+  const Reader reader(value, name, {&key_tables().half_space});
+  require(reader, "point");
+  require(reader, "normal");
+  Selection::HalfSpace half{Vec3::Zero(), Vec3::Zero()};
+  reader.point("point", half.point);
+  half.normal = parse_direction(reader, "normal", Vec3::Zero());
+  return half;
+}
 
 void require(const Reader& reader, std::string_view key) {
   if (!reader.has(key))

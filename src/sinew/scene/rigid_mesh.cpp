@@ -15,23 +15,29 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void refuse(const SceneObstacle& o, const std::string& what,
-                         const std::string& remedy) {
-  throw Error(ErrorKind::input, fmt::format("the mesh of [obstacle.{}] {}", o.name, what), remedy,
-              o.mesh_where);
+[[noreturn]] void refuse_mesh(const std::string& table, const Location& where,
+                              const std::string& what, const std::string& remedy) {
+  throw Error(ErrorKind::input, fmt::format("the mesh of {} {}", table, what), remedy, where);
 }
 
-io::SurfaceSoup read_soup(const Scene& scene, const SceneObstacle& o) {
-  if (const auto given = scene.given.obstacles.find(o.mesh); given != scene.given.obstacles.end())
+[[noreturn]] void refuse(const SceneObstacle& o, const std::string& what,
+                         const std::string& remedy) {
+  refuse_mesh(fmt::format("[obstacle.{}]", o.name), o.mesh_where, what, remedy);
+}
+
+io::SurfaceSoup read_soup(const Scene& scene, const std::string& mesh, const std::string& table,
+                          const Location& where) {
+  if (const auto given = scene.given.obstacles.find(mesh); given != scene.given.obstacles.end())
     return *given->second;
-  const fs::path path = fs::path(scene.base) / o.mesh;
+  const fs::path path = fs::path(scene.base) / mesh;
   if (!io::is_surface_name(path))
-    refuse(o, fmt::format("is no surface: {}", o.mesh),
-           "name a file .off .obj .stl .ply; a tet mesh is a body, and a body can be pinned whole");
+    refuse_mesh(table, where, fmt::format("is no surface: {}", mesh),
+                "name a file .off .obj .stl .ply; a tet mesh is a body, and a body can be pinned "
+                "whole");
   std::error_code failed;
   if (!fs::exists(path, failed))
-    refuse(o, fmt::format("is not there: {}", path.lexically_normal().string()),
-           "mesh paths start from the scene file's folder");
+    refuse_mesh(table, where, fmt::format("is not there: {}", path.lexically_normal().string()),
+                "mesh paths start from the scene file's folder");
   return io::read_surface(path);
 }
 
@@ -84,7 +90,7 @@ void check_winding(const SceneObstacle& o, const RigidMesh& mesh) {
 
 RigidMesh read_rigid_mesh(const Scene& scene, const SceneObstacle& o) {
   RigidMesh mesh;
-  weld(read_soup(scene, o), mesh);
+  weld(read_soup(scene, o.mesh, fmt::format("[obstacle.{}]", o.name), o.mesh_where), mesh);
   if (mesh.triangles.empty()) refuse(o, "has no triangle with an area", "check the file");
   drop_loose_vertices(mesh);
   check_winding(o, mesh);
@@ -97,6 +103,13 @@ RigidMesh read_rigid_mesh(const Scene& scene, const SceneObstacle& o) {
       refuse(o, "is placed beyond 1e9 m", "check scale and center; they are in metres");
   }
   return mesh;
+}
+
+CutTriangles read_cut_mesh(const Scene& scene, const SceneCut& cut) {
+  io::SurfaceSoup soup =
+      read_soup(scene, cut.mesh, fmt::format("[cut.{}]", cut.name), cut.mesh_where);
+  for (Vec3& x : soup.nodes) x *= cut.scale;
+  return {std::move(soup.nodes), std::move(soup.triangles)};
 }
 
 }  // namespace sinew

@@ -204,6 +204,29 @@ struct SceneObstacle {
   Location mesh_where;
 };
 
+// A cut by a plane, a disc, a blade or the surface of a mesh: one of them.
+struct SceneCut {
+  struct Disc {
+    Vec3 center, normal;
+    double radius = 0.0;  // [m]
+  };
+  struct Edge {         // the blade's edge at a time
+    double time = 0.0;  // [s]
+    Vec3 heel, tip;     // [m]
+  };
+  std::string name;
+  std::string body;      // empty: every body that the surface meets
+  double time = 0.0;     // [s] of a plane, disc or mesh
+  bool at_rest = false;  // coordinates of the rest shape; else where the body is at that time
+  std::optional<Selection::HalfSpace> plane;  // all through
+  std::optional<Disc> disc;
+  std::vector<Edge> blade;  // two or more, in the order of their times
+  std::string mesh;         // path, relative to the scene file
+  double scale = 1.0;       // mesh: metres per unit of the file
+  Location where;
+  Location mesh_where;
+};
+
 struct SceneGround {
   Vec3 point = Vec3::Zero();
   Vec3 normal = Vec3::UnitY();
@@ -258,6 +281,7 @@ struct Scene {
   std::vector<SceneForce> forces;
   std::vector<SceneProbe> probes;
   std::vector<SceneObstacle> obstacles;
+  std::vector<SceneCut> cuts;
 
   std::string file;                   // its own name, for messages
   std::vector<std::string> warnings;  // remarks for the user about how it was read

@@ -128,6 +128,15 @@ Request request_of(const std::string& type, Fields& f) {
     if (!f.has("point")) return Command(RemoveBall{});
     return Command(MoveBall{f.point("point"), radius});
   }
+  if (type == "blade") {
+    if (!f.has("heel")) return Command(LiftBlade{});
+    std::optional<Index> node;
+    if (f.has("node")) node = static_cast<Index>(f.integer("node", any_node));
+    const Vec3 heel = f.point("heel");
+    return Command(MoveBlade{node, heel, f.point("tip")});
+  }
+  if (type == "undo") return Command(Undo{});
+  if (type == "redo") return Command(Redo{});
   if (type == "cut") {
     const double offset = f.number("offset", 0.0);
     if (!f.has("normal")) return Command(SetCut{});
@@ -399,6 +408,10 @@ std::string status_text(const live::Status& s) {
                {"obstacles", std::move(obstacles)},
                {"ball", s.ball ? sphere(*s.ball) : Json(nullptr)},
                {"distance", std::move(distance)},
+               {"can_undo", s.can_undo},
+               {"can_redo", s.can_redo},
+               {"cut_area", s.cut_area},
+               {"pieces", s.pieces},
                {"error", s.error},
                {"errors", s.errors}});
 }

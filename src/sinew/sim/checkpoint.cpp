@@ -54,6 +54,13 @@ void visit(Archive& a, Run& r) {
   for_each_counter(r.work, counter);
 }
 
+template <typename Archive, typename AStroke>
+void visit_stroke(Archive& a, AStroke& stroke) {
+  a.array(stroke.surface.vertices);
+  a.array(stroke.surface.triangles);
+  a.array(stroke.last);
+}
+
 [[noreturn]] void reject(const std::string& name, const char* why, const char* remedy) {
   throw Error(ErrorKind::input, why, remedy, Location{name});
 }
@@ -89,6 +96,11 @@ std::string encode_run(std::uint64_t model_hash, const RunState& run) {
   ByteWriter w(magic);
   w.value(model_hash);
   sim::write_cuts(w, run.cuts);
+  w.value(run.cut_time);
+  w.value(static_cast<std::uint64_t>(run.strokes.size()));
+  for (const sim::Stroke& stroke : run.strokes) visit_stroke(w, stroke);
+  w.value(static_cast<std::uint64_t>(run.cut_log.size()));
+  for (const sim::CutRecord& record : run.cut_log) sim::visit_record(w, record);
   visit(w, run);
   w.value(digest(w.bytes));
   return std::move(w.bytes);
@@ -115,6 +127,11 @@ RunState decode_run(std::string_view bytes, const std::string& name, std::uint64
   }
   RunState run;
   sim::read_cuts(r, run.cuts);
+  r.value(run.cut_time);
+  run.strokes.resize(r.count(3 * sizeof(std::uint64_t)));
+  for (sim::Stroke& stroke : run.strokes) visit_stroke(r, stroke);
+  run.cut_log.resize(r.count(100));
+  for (sim::CutRecord& record : run.cut_log) sim::visit_record(r, record);
   visit(r, run);
   // With cuts, the number of nodes follows once they are applied: require_fit().
   if (!r.all_read() || (run.cuts.empty() && !fits(run, nodes))) {

@@ -82,24 +82,18 @@ void read_cuts(ByteReader& r, std::vector<ModelCut>& cuts) {
 
 ModelCut World::plan(const CutRequest& request) const {
   ModelCut cut(model_->bodies.size());
-  bool known = request.body.empty();
+  if (!request.body.empty()) body_named(request.body);
   for (std::size_t b = 0; b < model_->bodies.size(); ++b) {
     const Body& body = model_->bodies[b];
     if (!request.body.empty() && request.body != body.name) continue;
-    known = true;
     const auto first = static_cast<std::size_t>(body.nodes.begin);
     const auto count = uz(body.nodes.size());
     const std::span<const Vec3> rest = cut_bodies_[b].spec.mesh.nodes;
     const std::span<const Vec3> x =
         request.at_rest ? rest : std::span<const Vec3>(run_.state.position).subspan(first, count);
     const CutSurface surface(request.surface, bounds_of(x));
-    cut[b] = plan_cut({rest, x, cut_bodies_[b].spec.mesh.tets, cut_bodies_[b].node_size}, surface);
-  }
-  if (!known) {
-    std::string names;
-    for (const Body& body : model_->bodies) names += (names.empty() ? "" : ", ") + body.name;
-    throw Error(ErrorKind::usage, fmt::format("the scene has no body '{}' to cut", request.body),
-                fmt::format("it has: {}", names));
+    cut[b] = plan_cut({rest, x, cut_bodies_[b].spec.mesh.tets, cut_bodies_[b].node_size}, surface,
+                      {}, request.within ? &*request.within : nullptr);
   }
   return cut;
 }
@@ -107,11 +101,11 @@ ModelCut World::plan(const CutRequest& request) const {
 CutResult World::cut(const CutRequest& request, bool new_undo) {
   const Busy busy(*this);
   CutResult result;
-  arena_.run([&] { result = cut_now(request, new_undo); });
+  arena_.run([&] { result = cut_now(request, {}, new_undo); });
   return result;
 }
 
-CutResult World::cut_now(const CutRequest& request, bool new_undo) {
+CutResult World::cut_now(const CutRequest& request, const std::string& name, bool new_undo) {
   CutResult result;
   const ModelCut planned = plan(request);
   for (const BodyCut& body : planned) result.opened += static_cast<Index>(body.faces.size());
@@ -124,7 +118,8 @@ CutResult World::cut_now(const CutRequest& request, bool new_undo) {
   result.area = total_area(planned, cut_bodies_);
   result.new_nodes = -model_->node_count();
   result.new_tets = -model_->tet_count();
-  std::string saved = new_undo || undo_.empty() ? save() : std::string();
+  std::optional<Undo> before_cut;
+  if (new_undo || undo_.empty()) before_cut = this_moment();
 
   CutModel next = cut_model(*model_, cut_bodies_, planned);
   Built b;
@@ -150,7 +145,7 @@ CutResult World::cut_now(const CutRequest& request, bool new_undo) {
           : find_stable_step(*b.model, *b.controls, b.run.state.position, b.stepping->forces())
                 .step;
   ForceEvaluator forces(*b.model, Precision::double_);
-  relax(*b.model, *b.controls, before.elastic, h, forces, b.run.state);
+  relax(*b.model, *b.controls, next.change, before.elastic, h, forces, b.run.state);
   keep_angular_momentum(next.change, *model_, run_.state, *b.model, b.run.state);
   const Energies after = measure_energies(*b.model, *b.controls, b.run.state,
                                           forces.evaluate(*b.controls, b.run.state).force);
@@ -161,9 +156,10 @@ CutResult World::cut_now(const CutRequest& request, bool new_undo) {
   std::vector<std::string> warnings = std::move(warnings_);
   replace_by(std::move(b));
   warnings_ = std::move(warnings);
-  if (!saved.empty()) {
-    undo_.push_back(std::move(saved));
+  if (before_cut) {
+    undo_.push_back(std::move(*before_cut));
     if (undo_.size() > most_undone) undo_.erase(undo_.begin());
+    forget_old_models(undo_);
   }
   redo_.clear();
   result.elastic = after.elastic;
@@ -172,7 +168,33 @@ CutResult World::cut_now(const CutRequest& request, bool new_undo) {
   result.parts = count_parts(*model_);
   result.smallest_angle = smallest_angle(*model_);
   result.stable_step = run_.memory.stable_step;
+  record_cut(name, new_undo, result);
   return result;
+}
+
+// Adds the cut to the run's log, as a part of the one before if it belongs to the same stroke.
+void World::record_cut(const std::string& name, bool first, const CutResult& result) {
+  std::vector<CutRecord>& log = run_.cut_log;
+  if (first || log.empty() || log.back().name != name) {
+    log.push_back({name, run_.state.time, result});
+  } else {
+    CutResult all = result;
+    const CutResult& before = log.back().result;
+    all.opened += before.opened;
+    all.area += before.area;
+    all.new_nodes += before.new_nodes;
+    all.new_tets += before.new_tets;
+    all.parts_before = before.parts_before;
+    all.smallest_angle_before = before.smallest_angle_before;
+    all.stable_step_before = before.stable_step_before;
+    all.elastic_before = before.elastic_before;
+    log.back() = {name, run_.state.time, all};
+  }
+  if (result.parts > result.parts_before)
+    note(EventKind::parted, result.parts,
+         fmt::format("the cut {}left {} pieces", name.empty() ? "" : "'" + name + "' ",
+                     result.parts));
+  good_ = run_;
 }
 
 void World::apply_cuts(Built& built, const std::vector<ModelCut>& cuts) {
@@ -185,22 +207,44 @@ void World::apply_cuts(Built& built, const std::vector<ModelCut>& cuts) {
   built.controls = initial_controls(*built.model);
 }
 
+World::Undo World::this_moment() const {
+  return {save(), model_, cut_bodies_};
+}
+
+void World::forget_old_models(std::vector<Undo>& moments) {
+  constexpr Index most_tets = 200'000;  // about 400 MB
+  Index tets = 0;
+  for (auto m = moments.rbegin(); m != moments.rend(); ++m) {
+    if (!m->model) break;
+    tets += m->model->tet_count();
+    if (tets <= most_tets) continue;
+    m->model.reset();
+    m->bodies.clear();
+  }
+}
+
 void World::undo() {
+  const Busy busy(*this);
   if (undo_.empty())
     throw Error(ErrorKind::usage, "there is no cut to undo",
                 "undo() takes back cuts since the last change of the model, at most 100");
-  std::string now = save();
-  restore(undo_.back());
+  Undo now = this_moment();
+  for (Blade& blade : blades_) blade.stroke = {};
+  restore_to(undo_.back());
   redo_.push_back(std::move(now));
+  forget_old_models(redo_);
   undo_.pop_back();
 }
 
 void World::redo() {
+  const Busy busy(*this);
   if (redo_.empty())
     throw Error(ErrorKind::usage, "there is no cut to redo", "redo() follows undo()");
-  std::string now = save();
-  restore(redo_.back());
+  Undo now = this_moment();
+  for (Blade& blade : blades_) blade.stroke = {};
+  restore_to(redo_.back());
   undo_.push_back(std::move(now));
+  forget_old_models(undo_);
   redo_.pop_back();
 }
 

@@ -1,9 +1,11 @@
 // Cuts of a World (sim/cuts.cpp): their surface, and their bytes in a checkpoint.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "sinew/contact/box_tree.h"
 #include "sinew/cut/cut_model.h"
 #include "sinew/cut/cut_surface.h"
 #include "sinew/sim/bytes.h"
@@ -12,8 +14,9 @@ namespace sinew::sim {
 
 struct CutRequest {
   CutTriangles surface;
-  std::string body;      // empty: every body
-  bool at_rest = false;  // given in the rest shape; else where the bodies are now
+  std::string body;           // empty: every body
+  bool at_rest = false;       // given in the rest shape; else where the bodies are now
+  std::optional<Box> within;  // of the surface: only tets that overlap it are cut
 };
 
 // What a cut did.
@@ -28,7 +31,34 @@ struct CutResult {
   double elastic_before = 0.0, elastic = 0.0;                // energy [J]
 };
 
+// The cuts of a run that have one name: those of a stroke are added up.
+struct CutRecord {
+  std::string name;   // of the scene's cut; empty: a cut of the host
+  double time = 0.0;  // of the last one [s]
+  CutResult result;
+};
+
 void write_cuts(ByteWriter& w, const std::vector<ModelCut>& cuts);
 void read_cuts(ByteReader& r, std::vector<ModelCut>& cuts);
+
+// Visits the members of a record in the order of checkpoints, for reading and writing.
+template <typename Archive, typename Record>
+void visit_record(Archive& a, Record& r) {
+  a.array(r.name);
+  a.value(r.time);
+  auto& c = r.result;
+  a.value(c.opened);
+  a.value(c.area);
+  a.value(c.new_nodes);
+  a.value(c.new_tets);
+  a.value(c.parts_before);
+  a.value(c.parts);
+  a.value(c.smallest_angle_before);
+  a.value(c.smallest_angle);
+  a.value(c.stable_step_before);
+  a.value(c.stable_step);
+  a.value(c.elastic_before);
+  a.value(c.elastic);
+}
 
 }  // namespace sinew::sim

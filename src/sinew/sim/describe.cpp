@@ -5,8 +5,6 @@
 #include <utility>
 
 #include "sinew/base/error.h"
-#include "sinew/io/surface_file.h"
-#include "sinew/mesh/tet_mesh.h"
 
 namespace sinew::sim {
 namespace {
@@ -144,37 +142,6 @@ class Table {
   DocValue out_;
 };
 
-// The value of the key `mesh` for a mesh given in arrays.
-std::string memory_name(const std::string& name) {
-  return "memory:" + name;
-}
-
-[[noreturn]] void refuse(std::string message, std::string remedy, const std::string& place) {
-  throw Error(ErrorKind::input, std::move(message), std::move(remedy), {place, 0, 0});
-}
-
-constexpr std::size_t most_nodes = 100'000'000;
-
-void check_length(const std::string& of, const char* array, std::size_t length, const char* of_what,
-                  std::size_t expected, const std::string& place) {
-  if (length == 0 || length == expected) return;
-  refuse(fmt::format("the arrays of {} have {} {} for {} {}", of, length, array, expected, of_what),
-         fmt::format("give one for each of the {}, or none", of_what), place);
-}
-
-std::vector<Vec3> places_of(const std::vector<Point>& points) {
-  std::vector<Vec3> out;
-  out.reserve(points.size());
-  for (const Point& p : points) out.emplace_back(p[0], p[1], p[2]);
-  return out;
-}
-
-void refuse_two_sources(const std::string& of, const std::string& mesh, bool arrays,
-                        const std::string& place) {
-  if (!arrays || mesh.empty()) return;
-  refuse(fmt::format("{} has both a mesh file and arrays", of), "remove one of them", place);
-}
-
 }  // namespace
 
 DocValue table_of(const BodyDescription& b, const std::string& place) {
@@ -206,8 +173,9 @@ DocValue table_of(const BodyDescription& b, const std::string& place) {
     for (const RegionDescription& r : b.regions) {
       for (const std::string& name : names)
         if (name == r.name)
-          refuse(fmt::format("there are two regions called '{}' in [body.{}]", name, b.name),
-                 "give each a name of its own", place);
+          throw Error(ErrorKind::input,
+                      fmt::format("there are two regions called '{}' in [body.{}]", name, b.name),
+                      "give each a name of its own", {place, 0, 0});
       names.push_back(r.name);
       Table region(place);
       region.put_all("labels", r.labels);
@@ -299,6 +267,41 @@ DocValue table_of(const ObstacleDescription& o, const std::string& place) {
   return t.take();
 }
 
+DocValue table_of(const CutDescription& c, const std::string& place) {
+  Table t(place);
+  t.put("body", c.body);
+  t.put("time", c.time);
+  t.put_switch("at_rest", c.at_rest);
+  if (c.plane) {
+    Table plane(place);
+    plane.put("point", std::optional(c.plane->point));
+    plane.put("normal", std::optional(c.plane->normal));
+    t.add("plane", plane.take());
+  }
+  if (c.disc) {
+    Table disc(place);
+    disc.put("center", std::optional(c.disc->center));
+    disc.put("normal", std::optional(c.disc->normal));
+    disc.put("radius", std::optional(c.disc->radius));
+    t.add("disc", disc.take());
+  }
+  if (!c.blade.empty()) {
+    DocValue edges = Table(place).take();
+    edges.type = DocValue::Type::array;
+    for (const CutDescription::Edge& edge : c.blade) {
+      Table e(place);
+      e.put("time", std::optional(edge.time));
+      e.put("heel", std::optional(edge.heel));
+      e.put("tip", std::optional(edge.tip));
+      edges.items.push_back(e.take());
+    }
+    t.add("blade", std::move(edges));
+  }
+  t.put("mesh", c.arrays ? memory_name("cut " + c.name) : c.mesh);
+  t.put("scale", c.scale);
+  return t.take();
+}
+
 DocValue table_of(const GroundDescription& g, const std::string& place) {
   Table t(place);
   t.put("point", g.point);
@@ -375,54 +378,9 @@ void add_part(DocValue& root, std::string_view kind, const std::string& name, Do
     parts->where = {place, 0, 0};
   }
   if (parts->find(name) != nullptr)
-    refuse(fmt::format("there is a [{}.{}] already", kind, name), "give it a name of its own",
-           place);
+    throw Error(ErrorKind::input, fmt::format("there is a [{}.{}] already", kind, name),
+                "give it a name of its own", {place, 0, 0});
   parts->entries.push_back({name, std::move(value), {place, 0, 0}});
-}
-
-void keep_arrays(const BodyDescription& b, const std::string& place, GivenMeshes& given) {
-  const std::string of = fmt::format("[body.{}]", b.name);
-  refuse_two_sources(of, b.mesh, b.arrays.has_value(), place);
-  if (!b.arrays) return;
-  const MeshArrays& a = *b.arrays;
-  if (a.nodes.empty() || a.tets.empty())
-    refuse(fmt::format("the arrays of {} have {} nodes and {} tets", of, a.nodes.size(),
-                       a.tets.size()),
-           "a body has four nodes and one tet at least", place);
-  if (a.nodes.size() > most_nodes || a.tets.size() > most_nodes)
-    refuse(fmt::format("the arrays of {} have {} nodes and {} tets", of, a.nodes.size(),
-                       a.tets.size()),
-           fmt::format("at most {} of each", most_nodes), place);
-  check_length(of, "tet labels", a.tet_labels.size(), "tets", a.tets.size(), place);
-  check_length(of, "node labels", a.node_labels.size(), "nodes", a.nodes.size(), place);
-  if (a.faces.size() != a.face_labels.size())
-    refuse(fmt::format("the arrays of {} have {} face labels for {} faces", of,
-                       a.face_labels.size(), a.faces.size()),
-           "give one for each of the faces", place);
-  given.bodies[memory_name(b.name)] = std::make_shared<const TetMesh>(
-      TetMesh{places_of(a.nodes), a.tets, a.tet_labels, a.node_labels, a.faces, a.face_labels});
-}
-
-void keep_arrays(const ObstacleDescription& o, const std::string& place, GivenMeshes& given) {
-  const std::string of = fmt::format("[obstacle.{}]", o.name);
-  refuse_two_sources(of, o.mesh, o.arrays.has_value(), place);
-  if (!o.arrays) return;
-  auto soup = std::make_shared<io::SurfaceSoup>();
-  soup->nodes = places_of(o.arrays->nodes);
-  soup->triangles = o.arrays->triangles;
-  soup->polygons = o.arrays->triangles.size();
-  const auto count = static_cast<std::int64_t>(soup->nodes.size());
-  for (std::size_t i = 0; i < soup->nodes.size(); ++i)
-    if (!soup->nodes[i].allFinite())
-      refuse(fmt::format("node {} of the arrays of {} is not finite", i, of),
-             "give x, y, z in metres", place);
-  for (std::size_t t = 0; t < soup->triangles.size(); ++t)
-    for (const Index node : soup->triangles[t])
-      if (node < 0 || node >= count)
-        refuse(fmt::format("triangle {} of the arrays of {} names node {}, which is not there", t,
-                           of, node),
-               fmt::format("node ids are from 0 to {}", count - 1), place);
-  given.obstacles[memory_name(o.name)] = std::move(soup);
 }
 
 }  // namespace sinew::sim

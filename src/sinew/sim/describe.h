@@ -19,6 +19,7 @@ DocValue table_of(const DistanceDescription& distance, const std::string& place)
 DocValue table_of(const ForceDescription& force, const std::string& place);
 DocValue table_of(const ProbeDescription& probe, const std::string& place);
 DocValue table_of(const ObstacleDescription& obstacle, const std::string& place);
+DocValue table_of(const CutDescription& cut, const std::string& place);
 DocValue table_of(const GroundDescription& ground, const std::string& place);
 DocValue table_of(const ContactDescription& contact, const std::string& place);
 DocValue table_of(const MaterialDescription& material, const std::string& place);
@@ -35,9 +36,12 @@ void put(DocValue& table, std::string_view key, DocValue value);
 void add_part(DocValue& root, std::string_view kind, const std::string& name, DocValue value,
               const std::string& place);
 
+// The value of the key `mesh` for a mesh given in arrays.
+std::string memory_name(const std::string& name);
 // Keep the arrays of a description under the name that its table gives them. Error(input) for
 // arrays of different lengths, and for faults that otherwise only the reader of a file would find.
 void keep_arrays(const BodyDescription& body, const std::string& place, GivenMeshes& given);
 void keep_arrays(const ObstacleDescription& obstacle, const std::string& place, GivenMeshes& given);
+void keep_arrays(const CutDescription& cut, const std::string& place, GivenMeshes& given);
 
 }  // namespace sinew::sim

@@ -90,6 +90,9 @@ std::size_t World::index_of(ToolHandle h) const {
 std::size_t World::index_of(GrabHandle h) const {
   return index_in("grab", serial_, h.simulation_, h.id_, grabs_);
 }
+std::size_t World::index_of(BladeHandle h) const {
+  return index_in("blade", serial_, h.simulation_, h.id_, blades_);
+}
 std::size_t World::index_of(MaterialHandle h) const {
   std::vector<Named> all(parts_.size());
   for (std::size_t i = 0; i < all.size(); ++i) all[i].id = i + 1;

@@ -91,6 +91,7 @@ bool World::advance_frame(const std::atomic<bool>* stop, Clock::time_point deadl
       goes_on = !finished && !stepping_->cancelled() && (stop == nullptr || !stop->load()) &&
                 Clock::now() < deadline;
     }
+    if (finished) cut_on_schedule();
   });
   clock_ = run_.state.time;
   return finished;
@@ -111,6 +112,7 @@ void World::log_frame() {
 
 // Called at the end of a frame, and after a step of a length that the host chose.
 void World::end_frame() {
+  cut_on_schedule();
   if (run_.state.time - good_.state.time < between_looks * (1.0 - 1e-9)) return;
   keep();
   look_for_inverted_tets();

@@ -5,9 +5,10 @@
 #include <string>
 #include <vector>
 
-#include "sinew/cut/cut_model.h"
 #include "sinew/model/state.h"
+#include "sinew/sim/cuts.h"
 #include "sinew/sim/run_counters.h"
+#include "sinew/sim/stroke.h"
 #include "sinew/solver/stepper.h"
 
 namespace sinew {
@@ -20,7 +21,10 @@ struct FrameWork : RunCounters {
 
 struct RunState : RunCounters {
   State state;
-  std::vector<ModelCut> cuts;  // that lead from the scene's model to the one of the state
+  std::vector<ModelCut> cuts;           // that lead from the scene's model to the one of the state
+  double cut_time = -1.0;               // up to which the scene's cuts are done [s]
+  std::vector<sim::Stroke> strokes;     // of the scene's blades (cuts of the scene)
+  std::vector<sim::CutRecord> cut_log;  // in the order of time
   StepperKind stepper = StepperKind::automatic;  // in use; automatic: not chosen yet
   std::string stepper_reason;         // reason for the choice; empty if the scene names it
   StepMemory memory;                  // of the stepper

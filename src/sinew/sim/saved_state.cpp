@@ -87,9 +87,14 @@ std::string World::save() const {
   return std::move(w.bytes);
 }
 
-// Reads everything before it changes the World.
 void World::restore(const std::string& bytes) {
   const Busy busy(*this);
+  restore_to({bytes, nullptr, {}});
+}
+
+// Reads everything before it changes the World.
+void World::restore_to(const Undo& moment) {
+  const std::string& bytes = moment.state;
   std::string_view view(bytes);
   std::uint64_t closing = 0;
   if (view.size() < magic.size() + sizeof closing || view.substr(0, magic.size()) != magic)
@@ -157,7 +162,7 @@ void World::restore(const std::string& bytes) {
     }
   }
   if (!r.all_read()) refuse_damaged();
-  if (!same_cuts) continue_with_cuts(run, controls);
+  if (!same_cuts) continue_with_cuts(run, controls, moment);
   for (std::size_t i = 0; i < obstacles.size(); ++i) let_pin_follow(controls, *model_, i);
 
   run_ = std::move(run);
@@ -173,10 +178,22 @@ void World::restore(const std::string& bytes) {
   ++changes_;
 }
 
-// Replaces the model by the one with the cuts of `run`.
-void World::continue_with_cuts(const RunState& run, const Controls& controls) {
+// Replaces the model by the one with the cuts of `run`: the known one, if there is one.
+void World::continue_with_cuts(const RunState& run, const Controls& controls, const Undo& known) {
   arena_.run([&] {
-    Built b = build(source_, run.cuts);
+    Built b;
+    if (known.model) {
+      b.source = source_;
+      b.report = report_;
+      b.base_hash = base_hash_;
+      b.base_nodes = base_nodes_;
+      b.cut_bodies = known.bodies;
+      b.model = known.model;
+      b.hash = known.model->hash();
+      b.controls = initial_controls(*b.model);
+    } else {
+      b = build(source_, run.cuts);
+    }
     require_fit(run, *b.model);
     for (const Grab& grab : controls.grabs)
       for (const Index node : grab.nodes)

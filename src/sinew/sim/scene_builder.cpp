@@ -77,6 +77,15 @@ SceneBuilder& SceneBuilder::add_obstacle(const ObstacleDescription& obstacle) {
   return *this;
 }
 
+SceneBuilder& SceneBuilder::add_cut(const CutDescription& cut) {
+  Parts& p = parts();
+  GivenMeshes given = p.given;
+  sim::keep_arrays(cut, builder_place, given);
+  sim::add_part(p.root, "cut", cut.name, sim::table_of(cut, builder_place), builder_place);
+  p.given = std::move(given);
+  return *this;
+}
+
 SceneBuilder& SceneBuilder::add_pin(const PinDescription& pin) {
   sim::add_part(parts().root, "pin", pin.name, sim::table_of(pin, builder_place), builder_place);
   return *this;

@@ -101,7 +101,8 @@ Stepping::Stepping(const SteppingOptions& options, const Model& model, const Con
     options_.interval = std::max(options_.interval, options_.given());
   }
   frame_interval_ = options_.interval;
-  if (rest && !changes_with_time(model, controls) && options_.duration < no_limit) {
+  if (rest && !options_.cuts_later && !changes_with_time(model, controls) &&
+      options_.duration < no_limit) {
     options_.interval = options_.duration;
   }
   frames_ = count_frames(options_.duration, options_.interval);

@@ -28,6 +28,9 @@ SteppingOptions stepping_options(const Scene& scene) {
   o.interval = 1.0 / scene.output.fps;
   if (scene.budget_ms) o.budget = 1e-3 * *scene.budget_ms;
   o.file = scene.file;
+  o.cuts_later = std::any_of(scene.cuts.begin(), scene.cuts.end(), [](const SceneCut& cut) {
+    return cut.time > 0.0 || (!cut.blade.empty() && cut.blade.back().time > 0.0);
+  });
   return o;
 }
 

@@ -26,6 +26,7 @@ struct SteppingOptions {
   bool allow_unstable = false;                // a given step may be longer than the stable one
   double duration = no_limit;                 // [s]; infinity: no end
   double interval = 1.0 / 30.0;               // between the ends of frames [s]
+  bool cuts_later = false;                    // the scene cuts after its start
   std::optional<double> budget;               // wall time of a frame's steps [s]
   Pace pace = Pace::any;                      // `any` unless the scene leaves the steps open
   std::string file;                           // the scene's, for messages

@@ -35,6 +35,13 @@ std::vector<std::string> warnings_of(const Scene& scene, const BuildReport& repo
   return out;
 }
 
+void keep_cuts(const RunState& from, RunState& to) {
+  to.cuts = from.cuts;
+  to.cut_time = from.cut_time;
+  to.strokes = from.strokes;
+  to.cut_log = from.cut_log;
+}
+
 }  // namespace
 
 void World::Busy::refuse() {
@@ -107,7 +114,9 @@ void World::note_model() {
     for (Index i = b.nodes.begin; i < b.nodes.end; ++i) info.mass += model_->mass[uz(i)];
     bodies_.push_back(std::move(info));
   }
-  surface_ = build_surface(model_->tets, model_->body_node_count()).triangles;
+  std::vector<Triangle> surface = build_surface(model_->tets, model_->body_node_count()).triangles;
+  if (surface != surface_) ++topology_;
+  surface_ = std::move(surface);
   good_ = run_;
   clock_ = run_.state.time;
   last_inverted_ = 0;
@@ -135,6 +144,7 @@ void World::start(Source source) {
     for (const SceneRegion& region : body.regions) parts_.push_back({body.name, region.name});
   }
   look_for_inverted_tets();
+  if (run_.cut_time < 0.0) cut_on_schedule();
 }
 
 void World::reset() {
@@ -153,6 +163,7 @@ void World::reset() {
     for (Mover& m : pins_) m = {m.id, m.name, false, {}};
     replace_by(std::move(b));
     look_for_inverted_tets();
+    cut_on_schedule();
   });
 }
 
@@ -176,7 +187,7 @@ Scene World::current_scene() const {
 // take part in the choice of the steps, because their stiffness is bounded by it.
 void World::rebuild(Source source, const std::string& replaced, Steps steps) {
   Built b = build(std::move(source), run_.cuts);
-  b.run.cuts = run_.cuts;
+  keep_cuts(run_, b.run);
   b.controls->gravity = controls_->gravity;
   for (std::size_t i = 0; i < b.model->obstacles.size(); ++i) {
     const Obstacle& o = b.model->obstacles[i];
@@ -298,7 +309,7 @@ void World::choose_stepper_at(const State& state) {
   run.state = state;
   run.state.reactions = {};
   run.step = run_.step;
-  run.cuts = run_.cuts;
+  keep_cuts(run_, run);
   Controls released = *controls_;
   released.grabs.clear();
   auto stepping = std::make_unique<Stepping>(options_of(source_.scene), *model_, released, run);

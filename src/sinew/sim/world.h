@@ -92,6 +92,7 @@ class World {
   std::size_t index_of(ToolHandle handle) const;
   std::size_t index_of(GrabHandle handle) const;
   std::size_t index_of(MaterialHandle handle) const;
+  std::size_t index_of(BladeHandle handle) const;
   // The handle here of the object that `handle` names in the world that this one continues from.
   template <typename Kind>
   Handle<Kind> counterpart(Handle<Kind> handle) const {
@@ -117,12 +118,20 @@ class World {
   // alone; else together with the one before. Error(input) for a surface that is not finite,
   // Error(usage) for an unknown body.
   CutResult cut(const CutRequest& request, bool new_undo = true);
+  CutResult cut(const CutDescription& description);
+  // A blade of the host; a stroke from add_blade() or lift() to lift() is undone as a whole.
+  BladeHandle add_blade(std::string_view body);
+  CutResult move(BladeHandle handle, const Vec3& heel, const Vec3& tip);
+  void lift(BladeHandle handle);
+  void remove(BladeHandle handle);
   // Returns to the moment before the last cut; redo() to the moment of the undo(). A change that
   // rebuilds the model forgets both.
   void undo();
   void redo();
   bool can_undo() const { return !undo_.empty(); }
   bool can_redo() const { return !redo_.empty(); }
+  // Changes whenever nodes, tets or surface do.
+  std::int64_t topology() const { return topology_; }
 
   // Chooses the steps again without another model and continues; counters start again.
   void choose_steps();
@@ -167,6 +176,10 @@ class World {
   Scene current_scene() const;
   const BuildReport& report() const { return report_; }
   const Model& model() const { return *model_; }
+  // Of the model without cuts, which a checkpoint of the run belongs to.
+  std::uint64_t base_hash() const { return base_hash_; }
+  // The model, for what outlives the next cut.
+  std::shared_ptr<const Model> shared_model() const { return model_; }
   // The run; its owner maintains frame_times, start_energy and wall_seconds.
   RunState& run() { return run_; }
   const RunState& run() const { return run_; }
@@ -204,6 +217,18 @@ class World {
     double radius = 0.0;        // [m]
     std::vector<double> share;  // of the grab's stiffness (nodes), sum 1
   };
+  struct Blade {
+    std::uint64_t id = 0;
+    std::string body;
+    Stroke stroke;
+    SceneCut::Edge edge = {};  // the last one, in the world
+  };
+  // A moment to return to. Recent ones keep their model, which takes long to build.
+  struct Undo {
+    std::string state;
+    std::shared_ptr<const Model> model;
+    std::vector<CutBody> bodies;
+  };
   struct Part {  // a body or region that has a material
     std::string body, region;
   };
@@ -212,7 +237,7 @@ class World {
   struct Built {
     Source source;
     BuildReport report;
-    std::unique_ptr<const Model> model;
+    std::shared_ptr<const Model> model;
     std::uint64_t base_hash = 0;  // of the model without cuts, and
     std::size_t base_nodes = 0;   // its nodes
     std::uint64_t hash = 0;
@@ -242,8 +267,16 @@ class World {
   static Built build(Source source, const std::vector<ModelCut>& cuts);
   static void apply_cuts(Built& built, const std::vector<ModelCut>& cuts);
   ModelCut plan(const CutRequest& request) const;
-  void continue_with_cuts(const RunState& run, const Controls& controls);
-  CutResult cut_now(const CutRequest& request, bool new_undo);
+  void continue_with_cuts(const RunState& run, const Controls& controls, const Undo& known);
+  void restore_to(const Undo& moment);
+  Undo this_moment() const;
+  static void forget_old_models(std::vector<Undo>& moments);
+  const Body& body_named(const std::string& name) const;
+  CutResult cut_now(const CutRequest& request, const std::string& name, bool new_undo);
+  void record_cut(const std::string& name, bool first, const CutResult& result);
+  void cut_on_schedule();
+  CutTriangles surface_of(const SceneCut& cut) const;
+  Box draw_blade(const SceneCut& cut, Stroke& stroke, double from, double to) const;
   void replace_by(Built built);
   void start(Source source);
   void rebuild(Source source, const std::string& replaced, Steps steps);
@@ -269,13 +302,13 @@ class World {
   Arena arena_;
   Source source_;
   BuildReport report_;
-  std::unique_ptr<const Model> model_;
+  std::shared_ptr<const Model> model_;
   // Of the model without cuts, which a saved state belongs to.
   std::uint64_t base_hash_ = 0;
   std::size_t base_nodes_ = 0;
   std::uint64_t model_hash_ = 0;
-  std::vector<CutBody> cut_bodies_;       // of the model, for the next cut
-  std::vector<std::string> undo_, redo_;  // saved states
+  std::vector<CutBody> cut_bodies_;  // of the model, for the next cut
+  std::vector<Undo> undo_, redo_;
   std::unique_ptr<Stepping> stepping_;
   std::optional<Controls> controls_;  // of the model; empty before the first one
   RunState run_;
@@ -290,7 +323,9 @@ class World {
   std::vector<Mover> pins_;       // the scene's: (the first of Model::pins)
   std::vector<Named> tools_;      // (Controls::tools)
   std::vector<Patch> grabs_;      // (Controls::grabs)
+  std::vector<Blade> blades_;
   std::vector<Part> parts_;
+  std::int64_t topology_ = 0;
 
   bool moves_waiting_ = false;
   std::int64_t last_inverted_ = 0;  // tets, at the last check
@@ -306,5 +341,8 @@ class World {
   std::unique_ptr<ContactFinder> finder_;
   std::vector<Contact> contacts_;
 };
+
+// A plane that reaches beyond the box on all sides.
+CutTriangles plane_through(const Vec3& point, const Vec3& normal, const Box& box);
 
 }  // namespace sinew::sim
