@@ -259,7 +259,11 @@ test("the scalpel cuts along its way, and a cut can be undone and made again", (
     await until(page, (n) => window.sinew.state.rest.length / 3 > n, before);
     assert.deepEqual(await state(page, "camera"), camera); // neither the drag nor the new mesh turned it
     await until(page, () => /cm² cut/.test(document.querySelector("#cut-done").textContent));
-    const after = await nodes(page);
+    let after = 0; // when the last of the cut has come
+    while (after !== (await nodes(page))) {
+      after = await nodes(page);
+      await page.waitForTimeout(700);
+    }
     await picture(page, "scalpel");
     await page.getByRole("button", { name: "Undo the last cut" }).click();
     await until(page, (n) => window.sinew.state.rest.length / 3 === n, before);

@@ -25,9 +25,10 @@ struct CutOptions {
   // A node nearer to the surface than this share of the tets' size there lies on it, and no edge is
   // split nearer to its ends.
   double snap = 0.1;
-  // No new tet is lower than this share of that size, unless the one that it is a part of was. The
-  // stable step is as long as the lowest tet, and so it is kept. More nodes are snapped for that.
-  double height = 0.2;
+  // No new tet is lower than this share of that size, unless the one that it is a part of was: the
+  // stable step is about as long as the lowest tet. More nodes are snapped for that. A smaller
+  // share gives a smoother cut and shorter steps.
+  double height = 0.1;
 };
 
 // The mesh of a body.
