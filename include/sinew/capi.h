@@ -58,6 +58,18 @@ typedef struct sinew_grab {
   uint64_t simulation, id;
 } sinew_grab;
 
+typedef struct sinew_blade {
+  uint64_t simulation, id;
+} sinew_blade;
+
+/* What a cut did; nothing changed if opened is 0. */
+typedef struct sinew_cut_report {
+  int32_t opened; /* faces */
+  int32_t new_nodes, new_tets;
+  int32_t parts_before, parts; /* connected pieces of all bodies */
+  double area;                 /* of one side, at rest [m2] */
+} sinew_cut_report;
+
 /* `count` rows of `components` numbers, `stride` bytes from row to row; data is NULL if empty. */
 typedef struct sinew_array {
   const void* data;
@@ -144,6 +156,27 @@ SINEW_API sinew_status sinew_grab_nodes(sinew_simulation* s, int32_t node, doubl
 SINEW_API sinew_status sinew_move_grab(sinew_simulation* s, sinew_grab grab,
                                        const double target[3]);
 SINEW_API sinew_status sinew_release_grab(sinew_simulation* s, sinew_grab grab);
+
+/* ---- cuts ----
+ * body: NULL or "" for every body that the surface meets; for a blade, the only one. All arrays
+ * change. report may be NULL. */
+SINEW_API sinew_status sinew_cut_plane(sinew_simulation* s, const char* body, const double point[3],
+                                       const double normal[3], sinew_cut_report* report);
+/* vertices: [m] (3 vertex_count); triangles: (3 triangle_count), of any orientation. */
+SINEW_API sinew_status sinew_cut_triangles(sinew_simulation* s, const char* body,
+                                           const double* vertices, size_t vertex_count,
+                                           const int32_t* triangles, size_t triangle_count,
+                                           sinew_cut_report* report);
+SINEW_API sinew_status sinew_add_blade(sinew_simulation* s, const char* body, sinew_blade* out);
+/* Draws the blade on to an edge [m]; the first edge of a stroke cuts nothing. */
+SINEW_API sinew_status sinew_move_blade(sinew_simulation* s, sinew_blade blade,
+                                        const double heel[3], const double tip[3],
+                                        sinew_cut_report* report);
+SINEW_API sinew_status sinew_lift_blade(sinew_simulation* s, sinew_blade blade);
+SINEW_API sinew_status sinew_remove_blade(sinew_simulation* s, sinew_blade blade);
+/* To the moment before the last cut or stroke, and back. */
+SINEW_API sinew_status sinew_undo(sinew_simulation* s);
+SINEW_API sinew_status sinew_redo(sinew_simulation* s);
 
 /* ---- materials and gravity ----
  * region: NULL or "" for the body itself. key: as in a scene, of those with a number: "young".

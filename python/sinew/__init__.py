@@ -17,8 +17,8 @@ from . import report, study
 from .calibration import Calibration, Estimate, calibrate, read_curve
 from .errors import (DivergedError, Error, InputError, InternalError, IoError, UnstableError,
                      UsageError)
-from .handles import (Body, ContactPoint, Event, Grab, Material, Motion, Obstacle, Pin, Pose, Probe,
-                      Wrench)
+from .handles import (Blade, Body, ContactPoint, CutReport, Event, Grab, Material, Motion, Obstacle,
+                      Pin, Pose, Probe, Wrench)
 from .live import View, view
 from .scene import Scene
 from .simulation import Simulation
@@ -26,7 +26,7 @@ from .tasks import (ConvergeResult, LawIdentity, Moduli, RunResult, Trend, Valid
                     converge, identify, read_table, resume, run, static, validate)
 
 __all__ = [
-    "Body", "Calibration", "ContactPoint", "ConvergeResult", "DivergedError", "Error",
+    "Blade", "Body", "Calibration", "ContactPoint", "ConvergeResult", "CutReport", "DivergedError", "Error",
     "Estimate", "Event", "Grab", "InputError", "InternalError", "IoError", "LawIdentity",
     "Material", "Moduli", "Motion", "Obstacle", "Pin", "Pose", "Probe", "RunResult", "Scene",
     "Simulation", "Trend", "UnstableError", "UsageError", "ValidateResult", "View", "Wrench",

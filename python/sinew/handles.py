@@ -1,4 +1,4 @@
-"""What a simulation hands out: obstacles, pins, grabs, materials, and plain results."""
+"""What a simulation hands out: obstacles, pins, grabs, blades, materials, and plain results."""
 
 from __future__ import annotations
 
@@ -82,7 +82,7 @@ class Event:
     """Something that nobody asked for.
 
     kind: "inverted" (tets; count: their number), "diverged", "stepper_changed" (text: the reason),
-    "step_shortened".
+    "step_shortened", "parted" (count: pieces of the bodies after a cut).
     """
 
     kind: str
@@ -211,6 +211,46 @@ class Grab:
     def release(self) -> None:
         """Lets go."""
         self._s.release_grab(self._handle)
+
+
+@dataclasses.dataclass(frozen=True)
+class CutReport:
+    """What a cut did. Nothing changed if `opened` is 0."""
+
+    opened: int  # faces
+    area: float  # of one side of the cut, at rest [m2]
+    new_nodes: int
+    new_tets: int
+    parts_before: int  # connected pieces of all bodies
+    parts: int
+    smallest_angle_before: float  # dihedral, at rest [rad]
+    smallest_angle: float
+    stable_step_before: float  # [s]; inf unless steps are explicit
+    stable_step: float
+    elastic_before: float  # energy [J]
+    elastic: float  # never more than before
+
+
+class Blade:
+    """A blade that cuts a body as it moves; from Simulation.blade()."""
+
+    def __init__(self, simulation: _sinew.Simulation, handle: _sinew.BladeHandle) -> None:
+        self._s, self._handle = simulation, handle
+
+    def move(self, heel: Point, tip: Point) -> CutReport:
+        """Draws the blade on to an edge from heel to tip [m], through the tissue where it is now.
+
+        The first edge of a stroke cuts nothing.
+        """
+        return CutReport(*self._s.move_blade(self._handle, xyz(heel), xyz(tip)))
+
+    def lift(self) -> None:
+        """Ends the stroke: undo() takes back strokes."""
+        self._s.lift_blade(self._handle)
+
+    def remove(self) -> None:
+        """Puts the blade away; the cut stays."""
+        self._s.remove_blade(self._handle)
 
 
 class Material:

@@ -8,12 +8,15 @@ from typing import Any
 import numpy as np
 
 from . import _sinew
-from .handles import (Body, Event, Floats, Grab, Ints, Material, Obstacle,
+from .errors import UsageError
+from .handles import (Blade, Body, CutReport, Event, Floats, Grab, Ints, Material, Obstacle,
                       Pin, Point, Probe, xyz)
 from .live import View
 from .scene import Path, Scene, source_of
 
 Settings = Mapping[str, Any] | Sequence[str]
+Points = Sequence[Point] | Floats
+Triangles = Sequence[Sequence[int]] | Ints
 
 
 class Simulation:
@@ -227,6 +230,78 @@ class Simulation:
     def material(self, body: str, region: str = "") -> Material:
         """The material of a body, or of one of its regions."""
         return Material(self._s, self._s.material(body, region))
+
+    # ---- cuts ----
+
+    def cut(self, *, body: str = "", at_rest: bool = False,
+            plane: tuple[Point, Point] | None = None,
+            disc: tuple[Point, Point, float] | None = None,
+            blade: Sequence[tuple[Point, Point]] | None = None,
+            triangles: tuple[Points, Triangles] | None = None) -> CutReport:
+        """Cuts tissue along a surface, at once.
+
+        Args:
+            body: the body to cut; empty: every body that the surface meets; with a blade, the only
+                one.
+            at_rest: the coordinates are those of the rest shape, not of the current one.
+            plane: all through, (point [m], normal); or
+            disc: (center [m], normal, radius [m]); or
+            blade: edges (heel [m], tip [m]), two or more: what lies between them is cut; or
+            triangles: (vertices [m], (n, 3) indices into them), of any orientation.
+
+        Arrays of before keep their values and their length.
+
+        Raises:
+            UsageError: not exactly one surface is given, or there is no such body.
+            InputError: the surface is not valid.
+        """
+        given = [s for s in (plane, disc, blade, triangles) if s is not None]
+        if len(given) != 1:
+            raise UsageError(f"a cut has one surface, not {len(given)}",
+                             "give plane, disc, blade or triangles")
+        if plane is not None:
+            report = self._s.cut_by_plane(body, at_rest, xyz(plane[0]), xyz(plane[1]))
+        elif disc is not None:
+            report = self._s.cut_by_disc(body, at_rest, xyz(disc[0]), xyz(disc[1]), float(disc[2]))
+        elif blade is not None:
+            edges = [(xyz(heel), xyz(tip)) for heel, tip in blade]
+            report = self._s.cut_by_blade(body, at_rest, edges)
+        else:
+            assert triangles is not None
+            corners = [(int(a), int(b), int(c)) for a, b, c in triangles[1]]
+            report = self._s.cut_by_triangles(body, at_rest, [xyz(p) for p in triangles[0]], corners)
+        return CutReport(*report)
+
+    def blade(self, body: str = "") -> Blade:
+        """A blade that cuts a body as it moves; without a name, the only body."""
+        return Blade(self._s, self._s.add_blade(body))
+
+    def undo(self) -> None:
+        """Returns to the moment before the last cut() or stroke, with its bits.
+
+        Raises:
+            UsageError: there is none. A change that builds the model again forgets them.
+        """
+        self._s.undo()
+
+    def redo(self) -> None:
+        """Returns to the moment of the undo()."""
+        self._s.redo()
+
+    @property
+    def can_undo(self) -> bool:
+        """Whether there is a cut to undo."""
+        return self._s.can_undo
+
+    @property
+    def can_redo(self) -> bool:
+        """Whether there is a cut to redo."""
+        return self._s.can_redo
+
+    @property
+    def topology(self) -> int:
+        """Another number after every cut: nodes, tets and surface may be others."""
+        return self._s.topology
 
     @property
     def gravity(self) -> Floats:

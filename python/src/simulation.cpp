@@ -240,6 +240,7 @@ void add_simulation(py::module_& m) {
   add_time(c);
   add_values(c);
   add_objects(m, c);
+  add_cuts(m, c);
 }
 
 }  // namespace sinew::python

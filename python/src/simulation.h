@@ -1,6 +1,7 @@
 // Simulation, as Python holds it.
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 #include <map>
 #include <memory>
@@ -88,6 +89,7 @@ class PySimulation {
       act(simulation_);
     }
     if (ctrl_c.stop()->load()) sim::internals(simulation_).forget_interrupt();
+    if (topology_ != simulation_.topology()) changed();  // a cut of the scene
     follow();
     ctrl_c.finish();
   }
@@ -114,6 +116,7 @@ class PySimulation {
 
   // After a change that builds the model again: arrays of before keep their values.
   void changed() {
+    topology_ = simulation_.topology();
     for (auto& [name, mirror] : mirrors_) mirror.renew();
   }
 
@@ -143,7 +146,11 @@ class PySimulation {
   }
 
   Simulation simulation_;
+  std::int64_t topology_ = simulation_.topology();
   std::map<std::string, Mirror> mirrors_;
 };
+
+// Adds the functions of cuts (cuts.cpp).
+void add_cuts(py::module_& m, py::class_<PySimulation>& c);
 
 }  // namespace sinew::python

@@ -166,4 +166,40 @@ TEST_F(CApi, AnotherThreadReadsFinishedStatesDuringSteps) {
   EXPECT_EQ(newest->number, steps + 1);
 }
 
+TEST_F(CApi, CutsAndUndoes) {
+  const size_t nodes = sinew_positions(s_).count;
+  const double at[3] = {0.0, 0.0, 0.0}, normal[3] = {1.0, 0.1, 0.2};
+  sinew_cut_report report;
+  ASSERT_EQ(sinew_cut_plane(s_, nullptr, at, normal, &report), SINEW_OK) << sinew_error();
+  EXPECT_GT(report.opened, 5);
+  EXPECT_EQ(report.parts, report.parts_before + 1);
+  EXPECT_EQ(sinew_positions(s_).count, nodes + static_cast<size_t>(report.new_nodes));
+  ASSERT_EQ(sinew_undo(s_), SINEW_OK) << sinew_error();
+  EXPECT_EQ(sinew_positions(s_).count, nodes);
+  ASSERT_EQ(sinew_redo(s_), SINEW_OK);
+  EXPECT_GT(sinew_positions(s_).count, nodes);
+  ASSERT_EQ(sinew_undo(s_), SINEW_OK);
+  EXPECT_EQ(sinew_undo(s_), SINEW_USAGE);
+
+  const double corners[9] = {0.0, -1.0, -1.0, 0.0, 2.0, -1.0, 0.0, -1.0, 2.0};
+  const int32_t triangle[3] = {0, 1, 2};
+  EXPECT_EQ(sinew_cut_triangles(s_, "", corners, 3, triangle, 1, nullptr), SINEW_OK);
+  EXPECT_EQ(sinew_cut_triangles(s_, "", nullptr, 3, triangle, 1, nullptr), SINEW_USAGE);
+  ASSERT_EQ(sinew_undo(s_), SINEW_OK);
+  EXPECT_EQ(sinew_cut_plane(s_, "nobody", at, normal, nullptr), SINEW_INPUT);
+
+  sinew_blade blade;
+  ASSERT_EQ(sinew_add_blade(s_, nullptr, &blade), SINEW_OK);
+  int32_t opened = 0;
+  for (double x = 0.2; x > -0.2; x -= 0.05) {
+    const double heel[3] = {x, 0.2, 0.0}, tip[3] = {x, -0.2, 0.0};
+    ASSERT_EQ(sinew_move_blade(s_, blade, heel, tip, &report), SINEW_OK) << sinew_error();
+    opened += report.opened;
+  }
+  EXPECT_GT(opened, 5);
+  EXPECT_EQ(sinew_lift_blade(s_, blade), SINEW_OK);
+  EXPECT_EQ(sinew_remove_blade(s_, blade), SINEW_OK);
+  EXPECT_EQ(sinew_lift_blade(s_, blade), SINEW_USAGE);
+}
+
 }  // namespace

@@ -73,6 +73,10 @@ T value_of(const sinew_simulation* s, T otherwise, const Act& act) noexcept {
   return out;
 }
 
+void fill(sinew_cut_report* out, const CutReport& r) {
+  if (out != nullptr) *out = {r.opened, r.new_nodes, r.new_tets, r.parts_before, r.parts, r.area};
+}
+
 // Handles have the two numbers of those of C++.
 template <typename Handle, typename CHandle>
 Handle handle_of(CHandle h) {
@@ -311,6 +315,56 @@ sinew_status sinew_move_grab(sinew_simulation* s, sinew_grab grab, const double 
 }
 sinew_status sinew_release_grab(sinew_simulation* s, sinew_grab grab) {
   return changing(s, [&](Simulation& sim) { sim.release(handle_of<sinew::GrabHandle>(grab)); });
+}
+
+sinew_status sinew_cut_plane(sinew_simulation* s, const char* body, const double at[3],
+                             const double normal[3], sinew_cut_report* report) {
+  return changing(s, [&](Simulation& sim) {
+    sinew::CutDescription cut{.body = body != nullptr ? body : ""};
+    cut.plane = sinew::CutDescription::Plane{point(at, "point"), point(normal, "normal")};
+    fill(report, sim.cut(cut));
+  });
+}
+sinew_status sinew_cut_triangles(sinew_simulation* s, const char* body, const double* vertices,
+                                 size_t vertex_count, const int32_t* triangles,
+                                 size_t triangle_count, sinew_cut_report* report) {
+  return changing(s, [&](Simulation& sim) {
+    if (vertex_count > 0) required(vertices, "vertices");
+    if (triangle_count > 0) required(triangles, "triangles");
+    sinew::SurfaceArrays arrays;
+    for (size_t v = 0; v < vertex_count; ++v)
+      arrays.nodes.push_back(point(vertices + 3 * v, "vertices"));
+    for (size_t t = 0; t < triangle_count; ++t)
+      arrays.triangles.push_back({triangles[3 * t], triangles[3 * t + 1], triangles[3 * t + 2]});
+    sinew::CutDescription cut{.body = body != nullptr ? body : ""};
+    cut.arrays = std::move(arrays);
+    fill(report, sim.cut(cut));
+  });
+}
+sinew_status sinew_add_blade(sinew_simulation* s, const char* body, sinew_blade* out) {
+  return changing(s, [&](Simulation& sim) {
+    required(out, "out");
+    *out = std::bit_cast<sinew_blade>(sim.add_blade(body != nullptr ? body : ""));
+  });
+}
+sinew_status sinew_move_blade(sinew_simulation* s, sinew_blade blade, const double heel[3],
+                              const double tip[3], sinew_cut_report* report) {
+  return changing(s, [&](Simulation& sim) {
+    fill(report,
+         sim.move(handle_of<sinew::BladeHandle>(blade), point(heel, "heel"), point(tip, "tip")));
+  });
+}
+sinew_status sinew_lift_blade(sinew_simulation* s, sinew_blade blade) {
+  return changing(s, [&](Simulation& sim) { sim.lift(handle_of<sinew::BladeHandle>(blade)); });
+}
+sinew_status sinew_remove_blade(sinew_simulation* s, sinew_blade blade) {
+  return changing(s, [&](Simulation& sim) { sim.remove(handle_of<sinew::BladeHandle>(blade)); });
+}
+sinew_status sinew_undo(sinew_simulation* s) {
+  return changing(s, [&](Simulation& sim) { sim.undo(); });
+}
+sinew_status sinew_redo(sinew_simulation* s) {
+  return changing(s, [&](Simulation& sim) { sim.redo(); });
 }
 
 sinew_status sinew_set_material(sinew_simulation* s, const char* body, const char* region,
