@@ -17,7 +17,7 @@ namespace sinew {
 // take the first part of that motion, without its speed, until the elastic energy is at most
 // `elastic_before` [J]; one or two do in most cases. h [s] is the stable step, so the fastest mode
 // ends in one step. Inner forces move no centre of mass. Returns the elastic energy [J]; it is
-// higher than before if 100 steps do not suffice. `forces`: of the model, in double precision.
+// higher than before if 100 steps do not suffice. `forces`: of the model.
 //
 // Where bodies touch each other, the lips do not pass through each other: the two nodes of a place
 // that was doubled move apart, or stay together.

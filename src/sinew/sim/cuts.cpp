@@ -4,13 +4,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
 #include "sinew/base/error.h"
+#include "sinew/base/random.h"
 #include "sinew/cut/relax.h"
 #include "sinew/forces/terms.h"
-#include "sinew/mesh/quality.h"
+#include "sinew/mesh/faces.h"
 #include "sinew/mesh/surface.h"
 #include "sinew/sim/checkpoint.h"
 #include "sinew/sim/world.h"
@@ -27,14 +29,22 @@ Box bounds_of(std::span<const Vec3> x) {
   return box;
 }
 
+// By the largest cosine between two outward normals, which point apart where the angle is small.
 double smallest_angle(const Model& model) {
-  double least = std::numbers::pi;
+  const auto& X = model.rest_position;
+  double most = -1.0;  // - cosine of the angle between normals
   for (const Tet& t : model.tets) {
-    const auto& X = model.rest_position;
-    for (const double a : dihedral_angles({X[uz(t[0])], X[uz(t[1])], X[uz(t[2])], X[uz(t[3])]}))
-      least = std::min(least, a);
+    std::array<Vec3, 4> n;
+    for (std::size_t c = 0; c < 4; ++c) {
+      const auto& f = kTetFaces[c];
+      const Vec3& x0 = X[uz(t[f[0]])];
+      n[c] = (X[uz(t[f[1]])] - x0).cross(X[uz(t[f[2]])] - x0);
+      n[c] /= n[c].norm();
+    }
+    for (std::size_t c = 1; c < 4; ++c)
+      for (std::size_t d = 0; d < c; ++d) most = std::max(most, -n[c].dot(n[d]));
   }
-  return least;
+  return std::acos(std::min(1.0, most));
 }
 
 Index count_parts(const Model& model) {
@@ -51,9 +61,55 @@ double total_area(const ModelCut& cut, std::span<const CutBody> bodies) {
   return area;
 }
 
-Energies energies_of(const Model& model, const Controls& controls, const State& state) {
-  ForceEvaluator forces(model, Precision::double_);
-  return measure_energies(model, controls, state, forces.evaluate(controls, state).force);
+double longest_edge(const Model& model, const Body& body, std::span<const Vec3> x) {
+  double longest = 0.0;
+  for (Index t = body.tets.begin; t < body.tets.end; ++t) {
+    const Tet& tet = model.tets[uz(t)];
+    for (std::size_t a = 1; a < 4; ++a)
+      for (std::size_t b = 0; b < a; ++b)
+        longest = std::max(
+            longest,
+            (x[uz(tet[a] - body.nodes.begin)] - x[uz(tet[b] - body.nodes.begin)]).squaredNorm());
+  }
+  return std::sqrt(longest);
+}
+
+// The triangles near a part of the surface: the tets that overlap `within` are no larger than
+// `reach` [m].
+CutTriangles part_of(const CutTriangles& all, const Box& within, double reach) {
+  const Box box = within.grown(reach);
+  CutTriangles out{all.vertices, {}};
+  for (const Triangle& t : all.triangles) {
+    bool inside = true;
+    Box own;
+    for (const Index v : t) {
+      inside = inside && v >= 0 && uz(v) < all.vertices.size();
+      if (inside) own.add(all.vertices[uz(v)]);
+    }
+    if (!inside || box.overlaps(own)) out.triangles.push_back(t);
+  }
+  return out;
+}
+
+// The mode that limits the step, for the next version of the model: at random where it is new.
+std::vector<Vec3> carried_mode(const TopologyChange& change, const Model& before,
+                               const Model& after, const std::vector<Vec3>& mode) {
+  if (mode.size() != before.rest_position.size()) return {};
+  std::vector<Vec3> out = change.carried(mode);
+  const double size = 1.0 / std::sqrt(static_cast<double>(out.size()));
+  const auto scatter = [&](Index node) {
+    if (after.inverse_mass[uz(node)] > 0.0)
+      out[uz(node)] += size * (2.0 * random_point(static_cast<std::uint64_t>(node)) - Vec3::Ones());
+  };
+  for (std::size_t i = 0; i < change.node.size(); ++i)
+    if (after.mass[uz(change.node[i])] != before.mass[i]) scatter(change.node[i]);
+  for (const TopologyChange::NewNode& n : change.added) {
+    out[uz(n.node)] = Vec3::Zero();
+    scatter(n.node);
+  }
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (after.inverse_mass[i] == 0.0) out[i] = Vec3::Zero();
+  return out;
 }
 
 }  // namespace
@@ -91,7 +147,10 @@ ModelCut World::plan(const CutRequest& request) const {
     const std::span<const Vec3> rest = cut_bodies_[b].spec.mesh.nodes;
     const std::span<const Vec3> x =
         request.at_rest ? rest : std::span<const Vec3>(run_.state.position).subspan(first, count);
-    const CutSurface surface(request.surface, bounds_of(x));
+    const CutSurface surface(
+        request.within ? part_of(request.surface, *request.within, longest_edge(*model_, body, x))
+                       : request.surface,
+        bounds_of(x));
     cut[b] = plan_cut({rest, x, cut_bodies_[b].spec.mesh.tets, cut_bodies_[b].node_size}, surface,
                       {}, request.within ? &*request.within : nullptr);
   }
@@ -109,11 +168,17 @@ CutResult World::cut_now(const CutRequest& request, const std::string& name, boo
   CutResult result;
   const ModelCut planned = plan(request);
   for (const BodyCut& body : planned) result.opened += static_cast<Index>(body.faces.size());
-  result.parts_before = result.parts = count_parts(*model_);
-  result.smallest_angle_before = result.smallest_angle = smallest_angle(*model_);
+  if (quality_of_ != model_hash_) {
+    parts_now_ = count_parts(*model_);
+    angle_now_ = smallest_angle(*model_);
+    quality_of_ = model_hash_;
+  }
+  result.parts_before = result.parts = parts_now_;
+  result.smallest_angle_before = result.smallest_angle = angle_now_;
   result.stable_step_before = result.stable_step = run_.memory.stable_step;
   if (result.opened == 0) return result;
-  const Energies before = energies_of(*model_, *controls_, run_.state);
+  const auto& force = stepping_->forces().evaluate(*controls_, run_.state).force;
+  const Energies before = measure_energies(*model_, *controls_, run_.state, force);
   result.elastic_before = before.elastic;
   result.area = total_area(planned, cut_bodies_);
   result.new_nodes = -model_->node_count();
@@ -138,13 +203,14 @@ CutResult World::cut_now(const CutRequest& request, const std::string& name, boo
   b.cut_bodies = std::move(next.bodies);
   b.model = std::make_unique<Model>(std::move(next.model));
   b.stepping = std::make_unique<Stepping>(options_of(source_.scene), *b.model, *b.controls, b.run);
+  b.run.memory.stiff_mode = carried_mode(next.change, *model_, *b.model, run_.memory.stiff_mode);
   b.stepping->choose_step_again(*b.controls, b.run);
   const double h =
       b.run.memory.stable_step < no_limit
           ? b.run.memory.stable_step
           : find_stable_step(*b.model, *b.controls, b.run.state.position, b.stepping->forces())
                 .step;
-  ForceEvaluator forces(*b.model, Precision::double_);
+  ForceEvaluator& forces = b.stepping->forces();
   relax(*b.model, *b.controls, next.change, before.elastic, h, forces, b.run.state);
   keep_angular_momentum(next.change, *model_, run_.state, *b.model, b.run.state);
   const Energies after = measure_energies(*b.model, *b.controls, b.run.state,
@@ -165,8 +231,9 @@ CutResult World::cut_now(const CutRequest& request, const std::string& name, boo
   result.elastic = after.elastic;
   result.new_nodes += model_->node_count();
   result.new_tets += model_->tet_count();
-  result.parts = count_parts(*model_);
-  result.smallest_angle = smallest_angle(*model_);
+  result.parts = parts_now_ = count_parts(*model_);
+  result.smallest_angle = angle_now_ = smallest_angle(*model_);
+  quality_of_ = model_hash_;
   result.stable_step = run_.memory.stable_step;
   record_cut(name, new_undo, result);
   return result;

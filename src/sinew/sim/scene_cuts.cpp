@@ -82,9 +82,8 @@ Box World::draw_blade(const SceneCut& cut, Stroke& stroke, double from, double t
   const std::vector<double>& size =
       cut_bodies_[static_cast<std::size_t>(&body - model_->bodies.data())].node_size;
   const double spacing = 0.5 * *std::min_element(size.begin(), size.end());
-  const auto place = [&](const Vec3& p) {
-    return cut.at_rest ? p : rest_place(*model_, body, run_.state.position, p);
-  };
+  const RestPlaces places(*model_, body, run_.state.position);
+  const auto place = [&](const Vec3& p) { return cut.at_rest ? p : places.of(p); };
   SceneCut::Edge at = edges.front();
   if (stroke.last.empty()) {
     std::vector<Vec3> points = points_on_edge(at.heel, at.tip, spacing);

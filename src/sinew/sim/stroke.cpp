@@ -23,36 +23,43 @@ std::array<double, 4> barycentric(const std::vector<Vec3>& x, const Tet& t, cons
 
 }  // namespace
 
-Vec3 rest_place(const Model& model, const Body& body, const std::vector<Vec3>& x, const Vec3& p) {
-  constexpr double slack = -1e-9;
-  Index best = body.tets.begin;
-  double nearest = std::numeric_limits<double>::infinity();
+RestPlaces::RestPlaces(const Model& model, const Body& body, const std::vector<Vec3>& x)
+    : model_(model), body_(body), x_(x) {
   for (Index t = body.tets.begin; t < body.tets.end; ++t) {
-    const Tet& tet = model.tets[uz(t)];
-    Box box;
-    Vec3 center = Vec3::Zero();
-    for (const Index node : tet) {
-      box.add(x[uz(node)]);
-      center += 0.25 * x[uz(node)];
-    }
-    if ((p.array() >= box.lo.array()).all() && (p.array() <= box.hi.array()).all()) {
-      const auto share = barycentric(x, tet, p);
-      if (*std::min_element(share.begin(), share.end()) >= slack) {
-        best = t;
-        break;
-      }
-    }
-    const double distance = (p - center).squaredNorm();
-    if (distance < nearest && signed_volume(x, tet) > 0.0) {
-      nearest = distance;
-      best = t;
-    }
+    box_.push_back(box_around(model.tets[uz(t)], x));
+    Vec3 centre = Vec3::Zero();
+    for (const Index node : model.tets[uz(t)]) centre += 0.25 * x[uz(node)];
+    centre_.push_back(centre);
   }
-  const Tet& tet = model.tets[uz(best)];
-  const auto share = barycentric(x, tet, p);
-  Vec3 out = Vec3::Zero();
-  for (std::size_t k = 0; k < 4; ++k) out += share[k] * model.rest_position[uz(tet[k])];
-  return out;
+}
+
+Vec3 RestPlaces::of(const Vec3& p) const {
+  constexpr double slack = -1e-9;
+  const auto place = [&](Index t, const std::array<double, 4>& share) {
+    Vec3 out = Vec3::Zero();
+    for (std::size_t k = 0; k < 4; ++k)
+      out += share[k] * model_.rest_position[uz(model_.tets[uz(t)][k])];
+    return out;
+  };
+  for (std::size_t i = 0; i < box_.size(); ++i) {
+    if (!((p.array() >= box_[i].lo.array()).all() && (p.array() <= box_[i].hi.array()).all()))
+      continue;
+    const Index t = body_.tets.begin + static_cast<Index>(i);
+    const auto share = barycentric(x_, model_.tets[uz(t)], p);
+    if (*std::min_element(share.begin(), share.end()) >= slack) return place(t, share);
+  }
+  std::size_t nearest = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < centre_.size(); ++i) {
+    const double distance = (p - centre_[i]).squaredNorm();
+    if (distance >= least) continue;
+    const Index t = body_.tets.begin + static_cast<Index>(i);
+    if (!(signed_volume(x_, model_.tets[uz(t)]) > 0.0)) continue;
+    least = distance;
+    nearest = i;
+  }
+  const Index t = body_.tets.begin + static_cast<Index>(nearest);
+  return place(t, barycentric(x_, model_.tets[uz(t)], p));
 }
 
 Box Stroke::add(std::vector<Vec3> edge) {

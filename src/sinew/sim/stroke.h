@@ -13,8 +13,20 @@
 namespace sinew::sim {
 
 // The place in the rest shape of a point of the world: by the motion of the tet of the body that
-// holds it, or else of the tet with the nearest centre. x: positions [m] (nodes).
-Vec3 rest_place(const Model& model, const Body& body, const std::vector<Vec3>& x, const Vec3& p);
+// holds it, or else of the tet with the nearest centre.
+class RestPlaces {
+ public:
+  // x: positions [m] (nodes). Model and x must outlive the object.
+  RestPlaces(const Model& model, const Body& body, const std::vector<Vec3>& x);
+  Vec3 of(const Vec3& p) const;
+
+ private:
+  const Model& model_;
+  const Body& body_;
+  const std::vector<Vec3>& x_;
+  std::vector<Box> box_;      // (tets of the body)
+  std::vector<Vec3> centre_;  // (tets of the body)
+};
 
 struct Stroke {
   CutTriangles surface;  // swept so far, at rest [m]

@@ -309,6 +309,10 @@ class World {
   std::uint64_t model_hash_ = 0;
   std::vector<CutBody> cut_bodies_;  // of the model, for the next cut
   std::vector<Undo> undo_, redo_;
+  // Of the model with this hash: pieces, and smallest dihedral angle at rest [rad].
+  std::uint64_t quality_of_ = 0;
+  Index parts_now_ = 0;
+  double angle_now_ = 0.0;
   std::unique_ptr<Stepping> stepping_;
   std::optional<Controls> controls_;  // of the model; empty before the first one
   RunState run_;

@@ -224,13 +224,13 @@ double first_step(const Model& model, const Controls& controls, const Field& x, 
 }  // namespace
 
 StableStep find_stable_step(const Model& model, const Controls& controls, const Field& x,
-                            ForceEvaluator& forces) {
+                            ForceEvaluator& forces, const NearStep* near) {
   StableStep result;
-  double h = first_step(model, controls, x, result.stiffest);
+  double h = near != nullptr ? near->step : first_step(model, controls, x, result.stiffest);
   result.step = h;
   if (!std::isfinite(h)) return result;
 
-  Field u = scattered(model);
+  Field u = near != nullptr ? near->mode : scattered(model);
   Field y(u.size());
   ScaledTangent tangent(model, controls, x, forces);
   // The largest eigenvalue is a convex function of h, so after its first step Newton's method

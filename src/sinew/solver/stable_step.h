@@ -22,9 +22,16 @@ struct StableStep {
 // h_c at positions x. A step of the stepper in verlet.h is stable if (h^2 u.Ku + 2 h u.Cu) <= 4 for
 // every mode u (u.Mu = 1); for one mode that is h_c = (2/omega)(sqrt(1 + zeta^2) - zeta). So at h_c
 // the largest eigenvalue of M^-1 (h^2 K + 2 h C) is 4. h_c is found by Newton's method on h with
-// the Lanczos method inside, matrix-free. The residual makes every estimate a safe one.
+// the Lanczos method inside, matrix-free. The residual makes every estimate a safe one. `near`: a
+// step near it [s] and a start for the mode (nodes), with random values where the model is new:
+// fewer products are needed.
+struct NearStep {
+  double step = 0.0;
+  std::vector<Vec3> mode;
+};
 StableStep find_stable_step(const Model& model, const Controls& controls,
-                            const std::vector<Vec3>& x, ForceEvaluator& forces);
+                            const std::vector<Vec3>& x, ForceEvaluator& forces,
+                            const NearStep* near = nullptr);
 
 // The same during a run, at the cost of two steps in double precision or five in single: three
 // Lanczos products that start from `mode`, the mode found before, with the current step `h`; `mode`

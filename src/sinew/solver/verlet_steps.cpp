@@ -40,7 +40,10 @@ class VerletSteps : public Stepper {
       : model_(model), stepper_(model, options.precision) {}
 
   FirstStep begin(const Controls& controls, const State& state, StepMemory& memory) override {
-    StableStep stable = find_stable_step(model_, controls, state.position, forces());
+    const NearStep near{memory.stable_step, std::move(memory.stiff_mode)};
+    const bool known = near.mode.size() == state.position.size() && near.step < no_limit;
+    StableStep stable =
+        find_stable_step(model_, controls, state.position, forces(), known ? &near : nullptr);
     memory = {stable.step, std::move(stable.mode), first_watch, first_watch};
     return {stable.step, no_limit,
             "the stiffest spring is " + describe_spring(model_, stable.stiffest)};
