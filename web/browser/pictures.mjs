@@ -14,6 +14,7 @@ const FRONT = [0.52, 0.3, 0.8];
 // The moment, the side and the look of each scene: frames of 1/60 s, or single steps.
 const cards = {
   beam: { frames: 13, from: [0.75, 0.25, 0.6], room: 1.1 },
+  "cut-liver": { frames: 84, from: [0.35, 0.5, 1], room: 0.95, labels: false },
   drop: { frames: 24, from: [0.25, 0.3, 1], room: 1.05 },
   ligament: { frames: 60, from: [0.5, 0.12, 1], room: 1.02 },
   "liver-fine": { frames: 30, show: "w", room: 0.95 },
@@ -22,6 +23,7 @@ const cards = {
   pour: { frames: 50, color: "displacement", from: [0.3, 0.8, 1], room: 0.62, labels: false },
   press: { frames: 70, from: [0.35, 0.55, 1], room: 1.02 },
   pull: { frames: 58, color: "displacement", show: "u", from: [0.4, 0.25, 1] },
+  resect: { frames: 42, from: [0.3, 0.25, 1], room: 0.95, labels: false },
   stack: { frames: 20, color: "stress", from: [0.6, 0.2, 1], room: 1.02 },
   "talk-bad-constants": { steps: 28, color: "stretch" },
   "talk-constants": { frames: 20, color: "displacement" },

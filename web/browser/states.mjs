@@ -61,6 +61,33 @@ export const states = [
     },
   },
   {
+    name: "incised", scene: "scenes/liver.toml", size: WIDE, document: "view-5",
+    async show(page) {
+      await page.getByRole("button", { name: "Cut with a scalpel" }).click();
+      for (let i = 0; i < 6; ++i) await page.keyboard.press("]");
+      await runUntil(page, 1.5);
+      const at = await page.evaluate(() => {
+        const { positions, onPage } = window.sinew.state;
+        const middle = [0, 0];
+        for (let n = 0; n < positions.length / 3; ++n)
+          onPage(n).forEach((c, i) => (middle[i] += (3 * c) / positions.length));
+        return middle;
+      });
+      await page.mouse.move(at[0] + 40, at[1] - 70);
+      await page.mouse.down();
+      await until(page, () => window.sinew.state.cutting);
+      for (let k = 0; k <= 40; ++k) {
+        await page.mouse.move(at[0] + 40 - 0.4 * k, at[1] - 70 + 4.5 * k);
+        await page.waitForTimeout(40);
+      }
+      await page.mouse.up();
+      await until(page, () => window.sinew.state.status.cut_area > 1e-3 && !window.sinew.state.cutting, null, 120);
+      const time = await state(page, "time");
+      await until(page, (t) => window.sinew.state.time > t + 1, time, 120);
+      await drawn(page);
+    },
+  },
+  {
     name: "poured", scene: "scenes/pour.toml", size: WIDE, document: "view-4",
     async show(page) {
       await page.selectOption("#coloring", "displacement");

@@ -153,7 +153,8 @@ class Plan {
     });
     snap(mesh, crossed_, options.snap, on_);
     choose_edges();
-    around_ = with_neighbours(mesh, near_);
+    inside_ = with_neighbours(mesh, near_);
+    around_ = with_neighbours(mesh, inside_);
   }
 
   BodyCut make() {
@@ -270,7 +271,7 @@ class Plan {
     std::vector<double> smallest;
     for (Index t = 0; t < static_cast<Index>(patch_->tets().size()); ++t) {
       const Index parent = patch_->parent(t);
-      inside.push_back(std::binary_search(near_.begin(), near_.end(), parent));
+      inside.push_back(std::binary_search(inside_.begin(), inside_.end(), parent));
       double size = 0.0;
       for (const Index node : mesh_.tets[uz(parent)]) size += 0.25 * mesh_.size[uz(node)];
       smallest.push_back(least * size * size * size);
@@ -305,7 +306,8 @@ class Plan {
   std::vector<CrossedEdge> crossed_;
   std::vector<CrossedEdge> edges_;  // to split
   std::vector<Index> near_;         // the surface: tets that may be cut
-  std::vector<Index> around_;       // those and their neighbours
+  std::vector<Index> inside_;       // those and their neighbours: where crumbs are looked for
+  std::vector<Index> around_;       // and theirs: the patch
   std::vector<char> on_;            // the surface (nodes before)
   std::vector<char> off_;           // must not be on it (nodes before)
   int rounds_ = 0;
