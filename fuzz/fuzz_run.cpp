@@ -94,6 +94,30 @@ void add_body(Choices& c, int number, double young, std::string& text) {
   if (c.below(8) == 0) line(text, "start = \"{}\"", c.word("flat", "inverted", "random"));
 }
 
+std::string place(Choices& c) {
+  return fmt::format("[{}, {}, {}]", c.between(-0.2, 0.2), c.between(-0.1, 0.4),
+                     c.between(-0.2, 0.2));
+}
+
+void add_cut(Choices& c, int number, double duration, std::string& text) {
+  line(text, "[cut.c{}]\nat_rest = {}", number, c.below(2) == 0);
+  switch (c.below(3)) {
+    case 0:
+      line(text, "time = {}\nplane = {{ point = {}, normal = [1, {}, {}] }}",
+           duration * c.between(0.0, 1.0), place(c), c.between(-1, 1), c.between(-1, 1));
+      return;
+    case 1:
+      line(text, "time = {}\ndisc = {{ center = {}, normal = [{}, 1, 0], radius = {} }}",
+           duration * c.between(0.0, 1.0), place(c), c.between(-1, 1), c.decades(1e-4, 1.0));
+      return;
+    default:
+      line(text,
+           "body = \"b0\"\nblade = [{{ heel = {}, tip = {} }}, {{ time = {}, heel = {}, tip = {} "
+           "}}]",
+           place(c), place(c), duration * c.between(0.0, 1.0), place(c), place(c));
+  }
+}
+
 std::string scene_of(Choices& c) {
   const double young = c.decades(1e2, 1e9);
   const char* stepper = c.word("verlet", "implicit", "auto", "static");
@@ -139,6 +163,7 @@ std::string scene_of(Choices& c) {
     line(text, "[force.f]\nbody = \"b0\"\nselect = {{ all = true }}\nforce = [{}, {}, 0]",
          young * c.between(-1e-3, 1e-3), young * c.between(-1e-3, 1e-3));
   }
+  for (int k = c.below(4); k > 1; --k) add_cut(c, k, duration, text);
   line(text, "[output]\nfps = {}", 5.0 / duration);
   return text;
 }

@@ -249,9 +249,10 @@ class SINEW_API Simulation {
   // A blade that cuts a body (empty: the only one) as it moves. Its path is kept in the rest shape.
   BladeHandle add_blade(std::string_view body = {});
   // Draws the blade on to an edge from heel to tip [m], through the tissue where it is now. The
-  // first edge of a stroke cuts nothing.
+  // first edge of a stroke cuts nothing, and the last part of the way, shorter than a third of the
+  // smallest tets, waits for the next move or for lift().
   CutReport move(BladeHandle blade, const Point& heel, const Point& tip);
-  void lift(BladeHandle blade);  // ends the stroke
+  void lift(BladeHandle blade);  // cuts to the end of the way; the next move begins a stroke
   void remove(BladeHandle blade);
   // Returns to the moment before the last cut() or stroke, with its bits; redo() to the moment of
   // the undo(). At most 100; a change that builds the model again forgets them. Both lift blades.

@@ -31,18 +31,18 @@ py::tuple cut_without_lock(S& s, const Cut& cut) {
 
 void add_cuts(py::module_& m, py::class_<S>& c) {
   py::class_<BladeHandle>(m, "BladeHandle");
-  c.def("cut_by_plane", [](S& s, const std::string& body, bool at_rest, const Point& point,
-                           const Point& normal) {
-    return cut_without_lock(s, [&](Simulation& sim) {
-      return sim.cut({.body = body, .at_rest = at_rest, .plane = CutDescription::Plane{point, normal}});
-    });
-  });
+  c.def("cut_by_plane",
+        [](S& s, const std::string& body, bool at_rest, const Point& point, const Point& normal) {
+          return cut_without_lock(s, [&](Simulation& sim) {
+            return sim.cut(
+                {.body = body, .at_rest = at_rest, .plane = CutDescription::Plane{point, normal}});
+          });
+        });
   c.def("cut_by_disc", [](S& s, const std::string& body, bool at_rest, const Point& center,
                           const Point& normal, double radius) {
     return cut_without_lock(s, [&](Simulation& sim) {
-      return sim.cut({.body = body,
-                      .at_rest = at_rest,
-                      .disc = CutDescription::Disc{center, normal, radius}});
+      return sim.cut(
+          {.body = body, .at_rest = at_rest, .disc = CutDescription::Disc{center, normal, radius}});
     });
   });
   c.def("cut_by_blade", [](S& s, const std::string& body, bool at_rest,
@@ -51,13 +51,13 @@ void add_cuts(py::module_& m, py::class_<S>& c) {
     for (const auto& [heel, tip] : edges) cut.blade.push_back({0.0, heel, tip});
     return cut_without_lock(s, [&](Simulation& sim) { return sim.cut(cut); });
   });
-  c.def("cut_by_triangles", [](S& s, const std::string& body, bool at_rest,
-                               const std::vector<Point>& vertices,
-                               const std::vector<Triangle>& triangles) {
-    CutDescription cut{.body = body, .at_rest = at_rest};
-    cut.arrays = SurfaceArrays{vertices, triangles};
-    return cut_without_lock(s, [&](Simulation& sim) { return sim.cut(cut); });
-  });
+  c.def("cut_by_triangles",
+        [](S& s, const std::string& body, bool at_rest, const std::vector<Point>& vertices,
+           const std::vector<Triangle>& triangles) {
+          CutDescription cut{.body = body, .at_rest = at_rest};
+          cut.arrays = SurfaceArrays{vertices, triangles};
+          return cut_without_lock(s, [&](Simulation& sim) { return sim.cut(cut); });
+        });
   c.def("add_blade", [](S& s, const std::string& body) { return s.of().add_blade(body); });
   c.def("move_blade", [](S& s, BladeHandle h, const Point& heel, const Point& tip) {
     return cut_without_lock(s, [&](Simulation& sim) { return sim.move(h, heel, tip); });

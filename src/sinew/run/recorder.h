@@ -29,8 +29,8 @@ class Recorder {
   // Writes the current state as the last frame of run.frame_times. `model`: the one of the state, a
   // later version of the first one after a cut. `force`: the sum of all terms at the state [N]
   // (nodes). `finder`: null if nothing can touch.
-  void record(std::shared_ptr<const Model> model, const Controls& controls, const RunState& run, const Energies& energies,
-              const std::vector<Vec3>& force, ContactFinder* finder);
+  void record(std::shared_ptr<const Model> model, const Controls& controls, const RunState& run,
+              const Energies& energies, const std::vector<Vec3>& force, ContactFinder* finder);
 
   // Waits until everything written so far is on the disk. Throws Error(io), also for a frame that
   // could not be written since the last call of a function.

@@ -136,6 +136,20 @@ void read_cuts(ByteReader& r, std::vector<ModelCut>& cuts) {
   }
 }
 
+Index World::count_parts_now() {
+  if (quality_of_ != model_hash_) {
+    parts_now_ = count_parts(*model_);
+    angle_now_ = smallest_angle(*model_);
+    quality_of_ = model_hash_;
+  }
+  return parts_now_;
+}
+
+// Their strokes belong to a moment that is left; nothing is cut.
+void World::lift_all_blades() {
+  for (Blade& blade : blades_) blade = {blade.id, blade.body};
+}
+
 ModelCut World::plan(const CutRequest& request) const {
   ModelCut cut(model_->bodies.size());
   if (!request.body.empty()) body_named(request.body);
@@ -168,12 +182,7 @@ CutResult World::cut_now(const CutRequest& request, const std::string& name, boo
   CutResult result;
   const ModelCut planned = plan(request);
   for (const BodyCut& body : planned) result.opened += static_cast<Index>(body.faces.size());
-  if (quality_of_ != model_hash_) {
-    parts_now_ = count_parts(*model_);
-    angle_now_ = smallest_angle(*model_);
-    quality_of_ = model_hash_;
-  }
-  result.parts_before = result.parts = parts_now_;
+  result.parts_before = result.parts = count_parts_now();
   result.smallest_angle_before = result.smallest_angle = angle_now_;
   result.stable_step_before = result.stable_step = run_.memory.stable_step;
   if (result.opened == 0) return result;
@@ -296,7 +305,7 @@ void World::undo() {
     throw Error(ErrorKind::usage, "there is no cut to undo",
                 "undo() takes back cuts since the last change of the model, at most 100");
   Undo now = this_moment();
-  for (Blade& blade : blades_) blade.stroke = {};
+  lift_all_blades();
   restore_to(undo_.back());
   redo_.push_back(std::move(now));
   forget_old_models(redo_);
@@ -308,7 +317,7 @@ void World::redo() {
   if (redo_.empty())
     throw Error(ErrorKind::usage, "there is no cut to redo", "redo() follows undo()");
   Undo now = this_moment();
-  for (Blade& blade : blades_) blade.stroke = {};
+  lift_all_blades();
   restore_to(redo_.back());
   undo_.push_back(std::move(now));
   forget_old_models(undo_);

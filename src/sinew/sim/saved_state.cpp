@@ -89,6 +89,7 @@ std::string World::save() const {
 
 void World::restore(const std::string& bytes) {
   const Busy busy(*this);
+  lift_all_blades();
   restore_to({bytes, nullptr, {}});
 }
 

@@ -72,6 +72,12 @@ const Body& World::body_named(const std::string& name) const {
               fmt::format("it has: {}", names));
 }
 
+double World::smallest_size(const Body& body) const {
+  const std::vector<double>& size =
+      cut_bodies_[static_cast<std::size_t>(&body - model_->bodies.data())].node_size;
+  return *std::min_element(size.begin(), size.end());
+}
+
 // Draws the blade on by its path between two times. Returns the box around the new part of the
 // surface, in the rest shape.
 Box World::draw_blade(const SceneCut& cut, Stroke& stroke, double from, double to) const {
@@ -79,9 +85,7 @@ Box World::draw_blade(const SceneCut& cut, Stroke& stroke, double from, double t
   const std::vector<SceneCut::Edge>& edges = cut.blade;
   if (edges.front().time > to || (!stroke.last.empty() && edges.back().time <= from)) return box;
   const Body& body = body_named(cut.body);
-  const std::vector<double>& size =
-      cut_bodies_[static_cast<std::size_t>(&body - model_->bodies.data())].node_size;
-  const double spacing = 0.5 * *std::min_element(size.begin(), size.end());
+  const double spacing = 0.5 * smallest_size(body);
   const RestPlaces places(*model_, body, run_.state.position);
   const auto place = [&](const Vec3& p) { return cut.at_rest ? p : places.of(p); };
   SceneCut::Edge at = edges.front();
@@ -155,42 +159,67 @@ BladeHandle World::add_blade(std::string_view body) {
     throw Error(ErrorKind::usage, "the scene has several bodies, and the blade names none",
                 "name the body that it cuts");
   body_named(name);
-  blades_.push_back({next_id_++, std::move(name), {}, {}});
+  blades_.push_back({next_id_++, std::move(name)});
   return {serial_, blades_.back().id};
 }
 
 CutResult World::move(BladeHandle handle, const Vec3& heel, const Vec3& tip) {
   const Busy busy(*this);
+  constexpr double farthest = 1e9;  // [m]
+  for (const Vec3& end : {heel, tip})
+    if (!(end.cwiseAbs().maxCoeff() <= farthest))  // also what is no number
+      throw Error(ErrorKind::usage,
+                  fmt::format("an end of the blade is [{}, {}, {}]; expected numbers of at most "
+                              "{:g} m",
+                              end.x(), end.y(), end.z(), farthest),
+                  "give x, y, z in m");
   Blade& blade = blades_[index_of(handle)];
   CutResult result;
   arena_.run([&] {
-    const bool first = blade.stroke.surface.triangles.empty();
     SceneCut cut;
     cut.body = blade.body;
-    const SceneCut::Edge to{1.0, heel, tip};
-    cut.blade = {blade.stroke.last.empty() ? SceneCut::Edge{0.0, heel, tip} : blade.edge, to};
-    cut.blade[0].time = 0.0;
-    Stroke stroke = blade.stroke;
-    const bool starts = stroke.last.empty();
-    const Box box = draw_blade(cut, stroke, starts ? -1.0 : 0.0, starts ? 0.0 : 1.0);
-    CutRequest request;
-    request.surface = stroke.surface;
-    request.body = blade.body;
-    request.at_rest = true;
-    request.within = box;
-    result = cut_now(request, {}, first);
-    blade.stroke = std::move(stroke);
-    blade.edge = to;
+    const bool starts = blade.stroke.last.empty();
+    SceneCut::Edge from = starts ? SceneCut::Edge{0.0, heel, tip} : blade.edge;
+    from.time = 0.0;
+    blade.edge = {1.0, heel, tip};
+    cut.blade = {from, blade.edge};
+    const Box box = draw_blade(cut, blade.stroke, starts ? -1.0 : 0.0, starts ? 0.0 : 1.0);
+    if (!starts) blade.waiting.add(box);
+    blade.way += std::max((heel - from.heel).norm(), (tip - from.tip).norm());
+    // The front is known to a tet: what is less than a good part of one can wait.
+    constexpr double least = 0.35;
+    if (blade.way < least * smallest_size(body_named(blade.body))) {
+      result.parts_before = result.parts = count_parts_now();
+      return;
+    }
+    result = cut_along(blade);
   });
+  return result;
+}
+
+// Cuts the part of the blade's way that waits.
+CutResult World::cut_along(Blade& blade) {
+  CutRequest request;
+  request.surface = blade.stroke.surface;
+  request.body = blade.body;
+  request.at_rest = true;
+  request.within = std::exchange(blade.waiting, {});
+  blade.way = 0.0;
+  const CutResult result = cut_now(request, {}, !blade.cuts);
+  blade.cuts = blade.cuts || result.opened > 0;
   return result;
 }
 
 void World::lift(BladeHandle handle) {
   const Busy busy(*this);
-  blades_[index_of(handle)].stroke = {};
+  Blade& blade = blades_[index_of(handle)];
+  if (blade.way > 0.0 && !blade.stroke.surface.triangles.empty())
+    arena_.run([&] { cut_along(blade); });
+  blade = {blade.id, blade.body};
 }
 
 void World::remove(BladeHandle handle) {
+  lift(handle);
   const Busy busy(*this);
   blades_.erase(blades_.begin() + static_cast<std::ptrdiff_t>(index_of(handle)));
 }

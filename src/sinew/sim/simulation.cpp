@@ -335,59 +335,6 @@ std::vector<GrabHandle> Simulation::grabs() const {
   return world().grabs();
 }
 
-// ---- cuts ----
-
-namespace {
-
-CutReport report_of(const sim::CutResult& r) {
-  return {r.opened,
-          r.area,
-          r.new_nodes,
-          r.new_tets,
-          r.parts_before,
-          r.parts,
-          r.smallest_angle_before,
-          r.smallest_angle,
-          r.stable_step_before,
-          r.stable_step,
-          r.elastic_before,
-          r.elastic};
-}
-
-}  // namespace
-
-CutReport Simulation::cut(const CutDescription& description) {
-  return report_of(any_world().cut(description));
-}
-BladeHandle Simulation::add_blade(std::string_view body) {
-  return any_world().add_blade(body);
-}
-CutReport Simulation::move(BladeHandle handle, const Point& heel, const Point& tip) {
-  const Vec3 from = sinew::place(heel, "the heel of the blade");
-  return report_of(any_world().move(handle, from, sinew::place(tip, "the tip of the blade")));
-}
-void Simulation::lift(BladeHandle handle) {
-  any_world().lift(handle);
-}
-void Simulation::remove(BladeHandle handle) {
-  any_world().remove(handle);
-}
-void Simulation::undo() {
-  any_world().undo();
-}
-void Simulation::redo() {
-  any_world().redo();
-}
-bool Simulation::can_undo() const {
-  return world().can_undo();
-}
-bool Simulation::can_redo() const {
-  return world().can_redo();
-}
-std::int64_t Simulation::topology() const {
-  return world().topology();
-}
-
 // ---- materials and gravity ----
 
 MaterialHandle Simulation::material(std::string_view body, std::string_view region) const {

@@ -151,6 +151,7 @@ void World::reset() {
   const Busy busy(*this);
   arena_.run([&] {
     Built b = build(source_, {});
+    lift_all_blades();
     undo_.clear();
     redo_.clear();
     b.run.state = initial_state(*b.model);

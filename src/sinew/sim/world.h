@@ -219,9 +219,12 @@ class World {
   };
   struct Blade {
     std::uint64_t id = 0;
-    std::string body;
-    Stroke stroke;
+    std::string body = {};
+    Stroke stroke = {};
     SceneCut::Edge edge = {};  // the last one, in the world
+    Box waiting = {};          // around the newest part of the way, which is not cut yet, at rest
+    double way = 0.0;          // its length [m]
+    bool cuts = false;         // the stroke has cut already
   };
   // A moment to return to. Recent ones keep their model, which takes long to build.
   struct Undo {
@@ -276,6 +279,10 @@ class World {
   void record_cut(const std::string& name, bool first, const CutResult& result);
   void cut_on_schedule();
   CutTriangles surface_of(const SceneCut& cut) const;
+  CutResult cut_along(Blade& blade);
+  Index count_parts_now();
+  void lift_all_blades();
+  double smallest_size(const Body& body) const;
   Box draw_blade(const SceneCut& cut, Stroke& stroke, double from, double to) const;
   void replace_by(Built built);
   void start(Source source);
