@@ -16,7 +16,7 @@ namespace sinew {
 namespace {
 
 #ifdef SINEW_SANITIZED
-constexpr std::uint64_t share = 20;
+constexpr std::uint64_t share = 40;
 #else
 constexpr std::uint64_t share = 1;
 #endif

@@ -48,7 +48,7 @@ test("the ball goes in while it is held, is shown where it is, and goes away", (
     await until(page, () => /N$/.test([...document.querySelectorAll(".force")].map((e) => e.textContent).join("")));
     await page.keyboard.press("k");
     await until(page, () => window.sinew.state.contacts > 0);
-    const depth = page.getByLabel("Depth");
+    const depth = page.getByLabel("Depth", { exact: true });
     const before = Number(await depth.inputValue());
     await page.keyboard.press("]");
     await page.mouse.wheel(0, -100);

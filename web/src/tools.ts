@@ -57,7 +57,7 @@ export class Tools {
     this.radius.put(USUAL);
     this.depth.put(ball.depth);
     this.reach = new Slider({
-      label: "Depth",
+      label: "Cut depth",
       low: SHALLOWEST,
       high: DEEPEST_CUT,
       step: 0.01,
