@@ -58,6 +58,37 @@ TEST(Blade, AHandHoldsOnWhileItCuts) {
   s.apply(Release{0});
 }
 
+// Both bodies have the cuts of before; what is cut at other places ends the comparison.
+TEST(Blade, ACutBodyIsComparedWithOneThatHasTheCut) {
+  Session s(test::hanging_box());
+  draw(s, 1.0, -1.0);
+  const std::size_t shown = s.topology()->node.size();
+  s.apply(SetCompare{"fem"});
+  test::frames(s, 3);
+  const Frame frame = s.frame();
+  EXPECT_EQ(frame.position.size(), 3 * shown);
+  EXPECT_EQ(frame.compared.size(), 3 * shown);
+  s.apply(Reset{});
+  test::frames(s, 2);
+  EXPECT_EQ(s.frame().compared.size(), s.frame().position.size());
+}
+
+TEST(Blade, ACutAtOtherPlacesEndsTheComparison) {
+  Scene scene = test::hanging_box();
+  const Scene cut =
+      parse_scene(scene.document +
+                      "\n[cut.c]\ntime = 0.15\ndisc = { center = [0.01, -0.02, 0.003], normal = "
+                      "[0.3, 1, 0.2], radius = 0.4 }\n",
+                  "scene.toml", ".");
+  Session s(cut);
+  s.apply(SetCompare{"lloyd"});
+  test::frames(s, 20);
+  const Frame frame = s.frame();
+  EXPECT_EQ(frame.position.size(), 3 * s.topology()->node.size());
+  EXPECT_TRUE(frame.compared.empty() || frame.compared.size() == frame.position.size());
+  EXPECT_GT(s.status().cut_area, 0.0);
+}
+
 TEST(Blade, RefusesWhatCannotBe) {
   Session s(test::hanging_box());
   EXPECT_THROW(s.apply(MoveBlade{100000, Vec3::Zero(), Vec3::UnitY()}), Error);

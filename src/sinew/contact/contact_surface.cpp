@@ -132,7 +132,8 @@ void build_contact_surface(Model& model) {
   const Surface all = build_surface(model.tets, model.node_count());
   // The pieces that a cut leaves touch each other like bodies.
   const Components pieces =
-      connected_components(std::span<const Tet>(model.tets), model.node_count());
+      model.version > 0 ? connected_components(std::span<const Tet>(model.tets), model.node_count())
+                        : Components{};
   for (const Body& body : model.bodies) {
     std::vector<Index> ids;
     for (Index t = body.tets.begin; t < body.tets.end; ++t) {

@@ -56,12 +56,11 @@ void Session::execute(const Redo&) {
   changed();
 }
 
-// Shows the surface of a body that was cut. A compared body has other nodes from then on.
+// Shows the surface of a body that was cut. A compared body may have other nodes from then on.
 void Session::follow_cuts() {
   if (shown_ == world().topology()) return;
-  const Index nodes = static_cast<Index>(pair_.mine.size());
   show(cut_, springs_);
-  if (!other_ || nodes == model().node_count()) return;
+  if (!other_ || other_->model().tets == model().tets) return;
   execute(SetCompare{});
   report(Error(ErrorKind::usage, "the body was cut, and the compared one has other nodes now",
                "compare it again after a reset"));

@@ -339,7 +339,22 @@ void World::continue_from(const World& other) {
   next_id_ = std::max(next_id_, other.next_id_);
   controls_ = other.controls_;
   grabs_ = other.grabs_;
-  arena_.run([&] { choose_stepper_at(other.run_.state); });
+  arena_.run([&] {
+    if (run_.cuts != other.run_.cuts) {
+      Built b = build(source_, other.run_.cuts);
+      b.run.state = other.run_.state;
+      b.stepping =
+          std::make_unique<Stepping>(options_of(source_.scene), *b.model, *controls_, b.run);
+      b.obstacles = std::move(obstacles_);
+      std::vector<Patch> grabs = std::exchange(grabs_, {});
+      std::optional<Controls> controls = std::move(controls_);
+      replace_by(std::move(b));
+      grabs_ = std::move(grabs);
+      controls_ = std::move(controls);
+    }
+    keep_cuts(other.run_, run_);
+    choose_stepper_at(other.run_.state);
+  });
 }
 
 }  // namespace sinew::sim
