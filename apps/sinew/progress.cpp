@@ -199,7 +199,11 @@ std::string format_table(const Summary& s, std::span<const std::string> told) {
                                ? fmt::format("{} pieces (were {}); ", r.parts, r.parts_before)
                                : std::string(),
                            grouped(r.new_nodes), grouped(r.new_tets), r.smallest_angle / radians,
-                           r.smallest_angle_before / radians));
+                           r.smallest_angle_before / radians) +
+                   (r.fracture > 0.0 ? fmt::format("; {:.4g} J released at once, {:.4g} J of "
+                                                   "fracture energy",
+                                                   r.released, r.fracture)
+                                     : std::string()));
   }
   row("state hash", s.state_hash);
   if (!s.look_for.empty()) t += fmt::format("\nLook for: {}\n", s.look_for);

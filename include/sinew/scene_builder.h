@@ -43,6 +43,7 @@ struct MaterialDescription {
   std::string volume = {};  // none, tet, node
   std::optional<double> volume_limit = {};
   std::optional<double> volume_stiffness = {};
+  std::optional<double> tear_energy = {}, tear_strain = {}, tear_length = {};
 };
 
 // Nodes of a body: those that meet every given condition. Coordinates are in the world, for the

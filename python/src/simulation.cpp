@@ -62,9 +62,26 @@ ObstacleDescription obstacle_of(const std::string& name, const py::dict& k) {
 
 MaterialDescription material_of(const py::dict& k) {
   check_keys(k,
-             {"law", "density", "young", "poisson", "spring_stiffness", "spring_damping", "length",
-              "damping", "damping_ratio", "viscosity", "drag", "stretch_limit", "compress_limit",
-              "beta", "volume", "volume_limit", "volume_stiffness"},
+             {"law",
+              "density",
+              "young",
+              "poisson",
+              "spring_stiffness",
+              "spring_damping",
+              "length",
+              "damping",
+              "damping_ratio",
+              "viscosity",
+              "drag",
+              "stretch_limit",
+              "compress_limit",
+              "beta",
+              "volume",
+              "volume_limit",
+              "volume_stiffness",
+              "tear_energy",
+              "tear_strain",
+              "tear_length"},
              "a material");
   MaterialDescription d;
   take(k, "law", d.law);
@@ -84,6 +101,9 @@ MaterialDescription material_of(const py::dict& k) {
   take(k, "volume", d.volume);
   take(k, "volume_limit", d.volume_limit);
   take(k, "volume_stiffness", d.volume_stiffness);
+  take(k, "tear_energy", d.tear_energy);
+  take(k, "tear_strain", d.tear_strain);
+  take(k, "tear_length", d.tear_length);
   return d;
 }
 

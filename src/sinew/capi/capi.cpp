@@ -151,7 +151,10 @@ void set_value(MaterialDescription& m, std::string_view key, double value) {
       {"compress_limit", &m.compress_limit},
       {"beta", &m.beta},
       {"volume_limit", &m.volume_limit},
-      {"volume_stiffness", &m.volume_stiffness}};
+      {"volume_stiffness", &m.volume_stiffness},
+      {"tear_energy", &m.tear_energy},
+      {"tear_strain", &m.tear_strain},
+      {"tear_length", &m.tear_length}};
   std::string list;
   for (const auto& [name, place] : keys) {
     if (name == key) {

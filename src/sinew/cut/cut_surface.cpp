@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "sinew/base/error.h"
 #include "sinew/base/random.h"
@@ -43,6 +44,18 @@ std::array<std::int64_t, 3> moved(std::array<std::int64_t, 3> g) {
 }
 
 }  // namespace
+
+CutTriangles disc_surface(const Vec3& center, const Vec3& normal, double radius, Index corners) {
+  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
+  CutTriangles out;
+  out.vertices.push_back(center);
+  for (Index i = 0; i < corners; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / corners;
+    out.vertices.push_back(center + radius * (std::cos(angle) * u + std::sin(angle) * v));
+    out.triangles.push_back({0, 1 + i, 1 + (i + 1) % corners});
+  }
+  return out;
+}
 
 CutSurface::CutSurface(const CutTriangles& surface, const Box& around) {
   const double side = std::max((around.hi - around.lo).maxCoeff(), 1e-300);

@@ -18,6 +18,9 @@ struct CutTriangles {
   std::vector<Triangle> triangles;
 };
 
+// A disc as a fan of triangles; normal: of length 1.
+CutTriangles disc_surface(const Vec3& center, const Vec3& normal, double radius, Index corners);
+
 // Crossings are decided by exact arithmetic: coordinates are rounded to a grid of 2^39 cells along
 // the longest side of everything, where the sign of a tet's volume is an integer of less than 128
 // bits. Thus a segment does not slip through between two triangles that share an edge. Vertices

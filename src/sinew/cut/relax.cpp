@@ -50,14 +50,14 @@ void keep_apart(const Model& model, const std::vector<Lips>& lips, std::vector<V
 }  // namespace
 
 double relax(const Model& model, const Controls& controls, const TopologyChange& change,
-             double elastic_before, double h, ForceEvaluator& forces, State& state) {
+             double target, double h, ForceEvaluator& forces, State& state) {
   constexpr int most_steps = 100;
   double elastic = elastic_energy(configuration(model, controls, state));
-  if (elastic <= elastic_before) return elastic;
+  if (elastic <= target) return elastic;
   const std::vector<Lips> lips = lips_of(model, change, state.position);
   State still = state;  // no dashpot acts
   still.half_velocity.assign(still.half_velocity.size(), Vec3::Zero());
-  for (int step = 0; step < most_steps && elastic > elastic_before; ++step) {
+  for (int step = 0; step < most_steps && elastic > target; ++step) {
     const std::vector<Vec3>& force = forces.evaluate(controls, still).force;
     const std::vector<Vec3> outer = outer_forces(model, controls, still);
     for (std::size_t i = 0; i < force.size(); ++i)

@@ -15,13 +15,14 @@ namespace sinew {
 // crosses the cut. Steps of the steepest descent of the elastic energy in the metric of the masses,
 //   x += h^2/4 M^-1 f,
 // take the first part of that motion, without its speed, until the elastic energy is at most
-// `elastic_before` [J]; one or two do in most cases. h [s] is the stable step, so the fastest mode
+// `target` [J]: that before the cut, less the fracture energy of a tear, which the elastic energy
+// pays. One or two do for a cut in most cases. h [s] is the stable step, so the fastest mode
 // ends in one step. Inner forces move no centre of mass. Returns the elastic energy [J]; it is
 // higher than before if 100 steps do not suffice. `forces`: of the model.
 //
 // Where bodies touch each other, the lips do not pass through each other: the two nodes of a place
 // that was doubled move apart, or stay together.
 double relax(const Model& model, const Controls& controls, const TopologyChange& change,
-             double elastic_before, double h, ForceEvaluator& forces, State& state);
+             double target, double h, ForceEvaluator& forces, State& state);
 
 }  // namespace sinew

@@ -64,8 +64,15 @@ struct Material {
   Volume volume = Volume::by_law;
   double volume_stiffness = -1.0;  // kappa [Pa] of the cells; negative: from young and poisson
   double volume_limit = no_limit;  // [-] > 0: largest |J - 1| of a node cell after a step
+  double tear_energy = no_limit;   // Gc [J/m2] > 0: a crack advances where it releases so much
+  double tear_strain = no_limit;   // [-] > 0: tissue tears where its largest strain, as a mean
+  double tear_length = 0.0;        // over this length [m], reaches so much; 0: of the body's size
   double spring_scale = 1.0;  // [-] > 0, factor on the stiffness of lloyd's and vangelder's springs
 };
+
+inline bool tears(const Material& m) {
+  return m.tear_energy < no_limit || m.tear_strain < no_limit;
+}
 
 // Lame's constants: mu = E / (2 (1 + nu)), lambda = E nu / ((1 + nu)(1 - 2 nu)) [Pa].
 inline double shear_modulus(double young, double poisson) {

@@ -196,7 +196,9 @@ nlohmann::ordered_json to_json(const sim::CutRecord& cut) {
           {"pieces", {r.parts_before, r.parts}},
           {"smallest_angle", {r.smallest_angle_before / radians, r.smallest_angle / radians}},
           {"stable_step", {step(r.stable_step_before), step(r.stable_step)}},
-          {"elastic", {r.elastic_before, r.elastic}}};
+          {"elastic", {r.elastic_before, r.elastic}},
+          {"fracture", r.fracture},
+          {"released", r.released}};
 }
 
 }  // namespace

@@ -149,6 +149,9 @@ KeyTables make_tables() {
                     word("volume", "the law's choice", all_words<Volume>()),
                     number("volume_limit", "", "inf", positive_or_none),
                     number("volume_stiffness", "Pa", "the one of young and poisson", not_negative),
+                    number("tear_energy", "J/m2", "inf", positive_or_none),
+                    number("tear_strain", "", "inf", positive_or_none),
+                    number("tear_length", "m", "a tenth of the body's size", positive),
                 }};
   t.region = {"region",
               "[body.NAME.region.NAME]",

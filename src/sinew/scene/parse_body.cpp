@@ -178,6 +178,28 @@ Eigen::Quaterniond parse_rotation(const Reader& reader) {
   return Eigen::Quaterniond::Identity();
 }
 
+namespace {
+
+void parse_tearing(const Reader& reader, Material& m) {
+  reader.number("tear_energy", m.tear_energy);
+  reader.number("tear_strain", m.tear_strain);
+  reader.number("tear_length", m.tear_length);
+  if (m.tear_energy < no_limit && m.law != Law::neo_hookean) {
+    const std::string_view key = reader.has("tear_energy") ? "tear_energy" : "law";
+    reader.fail(
+        key,
+        fmt::format("tear_energy goes with law = \"neo-hookean\", not with \"{}\"", word_of(m.law)),
+        "springs have no energy per volume to release: use tear_strain, or that law");
+  }
+  if (reader.has("tear_length") && m.tear_strain == no_limit)
+    reader.fail(
+        "tear_length",
+        fmt::format("{} goes with tear_strain, and there is none", reader.called("tear_length")),
+        "add tear_strain, or remove it");
+}
+
+}  // namespace
+
 Material parse_material(const Reader& reader, const Material& base) {
   Material m = base;
   parse_tissue(reader, m);
@@ -198,6 +220,7 @@ Material parse_material(const Reader& reader, const Material& base) {
   reader.number("drag", m.drag);
   reader.number("stretch_limit", m.stretch_limit);
   reader.number("compress_limit", m.compress_limit);
+  parse_tearing(reader, m);
   return m;
 }
 

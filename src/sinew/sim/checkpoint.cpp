@@ -15,7 +15,7 @@
 namespace sinew {
 namespace {
 
-constexpr std::string_view magic = "SINEWCPA";
+constexpr std::string_view magic = "SINEWCPB";
 
 // Visits every member in the file's order: one list for reading and writing.
 template <typename Archive, typename Run>

@@ -174,11 +174,12 @@ ModelCut World::plan(const CutRequest& request) const {
 CutResult World::cut(const CutRequest& request, bool new_undo) {
   const Busy busy(*this);
   CutResult result;
-  arena_.run([&] { result = cut_now(request, {}, new_undo); });
+  arena_.run([&] { result = cut_now(request, {}, new_undo ? UndoStep::own : UndoStep::joined); });
   return result;
 }
 
-CutResult World::cut_now(const CutRequest& request, const std::string& name, bool new_undo) {
+CutResult World::cut_now(const CutRequest& request, const std::string& name, UndoStep undo_step,
+                         double fracture_energy) {
   CutResult result;
   const ModelCut planned = plan(request);
   for (const BodyCut& body : planned) result.opened += static_cast<Index>(body.faces.size());
@@ -190,10 +191,12 @@ CutResult World::cut_now(const CutRequest& request, const std::string& name, boo
   const Energies before = measure_energies(*model_, *controls_, run_.state, force);
   result.elastic_before = before.elastic;
   result.area = total_area(planned, cut_bodies_);
+  result.fracture = fracture_energy * result.area;
   result.new_nodes = -model_->node_count();
   result.new_tets = -model_->tet_count();
   std::optional<Undo> before_cut;
-  if (new_undo || undo_.empty()) before_cut = this_moment();
+  if (undo_step == UndoStep::own || (undo_step == UndoStep::joined && undo_.empty()))
+    before_cut = this_moment();
 
   CutModel next = cut_model(*model_, cut_bodies_, planned);
   Built b;
@@ -220,7 +223,8 @@ CutResult World::cut_now(const CutRequest& request, const std::string& name, boo
           : find_stable_step(*b.model, *b.controls, b.run.state.position, b.stepping->forces())
                 .step;
   ForceEvaluator& forces = b.stepping->forces();
-  relax(*b.model, *b.controls, next.change, before.elastic, h, forces, b.run.state);
+  relax(*b.model, *b.controls, next.change, before.elastic - result.fracture, h, forces,
+        b.run.state);
   keep_angular_momentum(next.change, *model_, run_.state, *b.model, b.run.state);
   const Energies after = measure_energies(*b.model, *b.controls, b.run.state,
                                           forces.evaluate(*b.controls, b.run.state).force);
@@ -238,13 +242,14 @@ CutResult World::cut_now(const CutRequest& request, const std::string& name, boo
   }
   redo_.clear();
   result.elastic = after.elastic;
+  if (undo_step == UndoStep::none) result.released = before.elastic - after.elastic;
   result.new_nodes += model_->node_count();
   result.new_tets += model_->tet_count();
   result.parts = parts_now_ = count_parts(*model_);
   result.smallest_angle = angle_now_ = smallest_angle(*model_);
   quality_of_ = model_hash_;
   result.stable_step = run_.memory.stable_step;
-  record_cut(name, new_undo, result);
+  record_cut(name, undo_step == UndoStep::own, result);
   return result;
 }
 
@@ -264,6 +269,8 @@ void World::record_cut(const std::string& name, bool first, const CutResult& res
     all.smallest_angle_before = before.smallest_angle_before;
     all.stable_step_before = before.stable_step_before;
     all.elastic_before = before.elastic_before;
+    all.fracture += before.fracture;
+    all.released += before.released;
     log.back() = {name, run_.state.time, all};
   }
   if (result.parts > result.parts_before)

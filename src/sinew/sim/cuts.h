@@ -29,6 +29,8 @@ struct CutResult {
   double smallest_angle_before = 0.0, smallest_angle = 0.0;  // dihedral, at rest [rad]
   double stable_step_before = 0.0, stable_step = 0.0;        // [s]; infinite: not explicit
   double elastic_before = 0.0, elastic = 0.0;                // energy [J]
+  double fracture = 0.0;  // of a tear [J]: its area times the fracture energy
+  double released = 0.0;  // by a tear at once, of the elastic energy [J]
 };
 
 // The cuts of a run that have one name: those of a stroke are added up.
@@ -59,6 +61,8 @@ void visit_record(Archive& a, Record& r) {
   a.value(c.stable_step);
   a.value(c.elastic_before);
   a.value(c.elastic);
+  a.value(c.fracture);
+  a.value(c.released);
 }
 
 }  // namespace sinew::sim

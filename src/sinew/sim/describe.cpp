@@ -100,6 +100,9 @@ class Table {
     put("volume", m.volume);
     put("volume_limit", m.volume_limit);
     put("volume_stiffness", m.volume_stiffness);
+    put("tear_energy", m.tear_energy);
+    put("tear_strain", m.tear_strain);
+    put("tear_length", m.tear_length);
   }
   void add(std::string_view key, DocValue value) {
     out_.entries.push_back({std::string(key), std::move(value), out_.where});

@@ -91,7 +91,10 @@ bool World::advance_frame(const std::atomic<bool>* stop, Clock::time_point deadl
       goes_on = !finished && !stepping_->cancelled() && (stop == nullptr || !stop->load()) &&
                 Clock::now() < deadline;
     }
-    if (finished) cut_on_schedule();
+    if (finished) {
+      cut_on_schedule();
+      tear_where_due();
+    }
   });
   clock_ = run_.state.time;
   return finished;
@@ -113,6 +116,7 @@ void World::log_frame() {
 // Called at the end of a frame, and after a step of a length that the host chose.
 void World::end_frame() {
   cut_on_schedule();
+  tear_where_due();
   if (run_.state.time - good_.state.time < between_looks * (1.0 - 1e-9)) return;
   keep();
   look_for_inverted_tets();

@@ -16,7 +16,7 @@
 namespace sinew::sim {
 namespace {
 
-constexpr std::string_view magic = "SINEWST2";
+constexpr std::string_view magic = "SINEWST3";
 const std::string call = "restore()";
 
 // A path; one list of members for reading and writing.

@@ -15,20 +15,6 @@
 namespace sinew::sim {
 namespace {
 
-// A disc as a fan of triangles.
-CutTriangles disc(const Vec3& center, const Vec3& normal, double radius) {
-  constexpr Index corners = 48;
-  const Vec3 u = normal.unitOrthogonal(), v = normal.cross(u);
-  CutTriangles out;
-  out.vertices.push_back(center);
-  for (Index i = 0; i < corners; ++i) {
-    const double angle = 2.0 * std::numbers::pi * i / corners;
-    out.vertices.push_back(center + radius * (std::cos(angle) * u + std::sin(angle) * v));
-    out.triangles.push_back({0, 1 + i, 1 + (i + 1) % corners});
-  }
-  return out;
-}
-
 SceneCut::Edge between(const SceneCut::Edge& a, const SceneCut::Edge& b, double time) {
   const double s =
       b.time > a.time ? std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0) : 1.0;
@@ -40,7 +26,7 @@ SceneCut::Edge between(const SceneCut::Edge& a, const SceneCut::Edge& b, double 
 CutTriangles plane_through(const Vec3& point, const Vec3& normal, const Box& box) {
   const Vec3 n = normal.normalized();
   const Vec3 middle = 0.5 * (box.lo + box.hi);
-  return disc(middle - n.dot(middle - point) * n, n, 2.0 * (box.hi - box.lo).norm());
+  return disc_surface(middle - n.dot(middle - point) * n, n, 2.0 * (box.hi - box.lo).norm(), 48);
 }
 
 // A blade that moves on from the edge `a` to `b`, in parts no longer than `spacing` [m].
@@ -109,7 +95,7 @@ Box World::draw_blade(const SceneCut& cut, Stroke& stroke, double from, double t
 
 // Of a cut without a time: a plane, a disc, a mesh.
 CutTriangles World::surface_of(const SceneCut& cut) const {
-  if (cut.disc) return disc(cut.disc->center, cut.disc->normal, cut.disc->radius);
+  if (cut.disc) return disc_surface(cut.disc->center, cut.disc->normal, cut.disc->radius, 48);
   if (!cut.mesh.empty()) return read_cut_mesh(source_.scene, cut);
   Box box;
   const std::vector<Vec3>& x = cut.at_rest ? model_->rest_position : run_.state.position;
@@ -144,7 +130,7 @@ CutResult World::cut(const CutDescription& description) {
     } else {
       request.surface = surface_of(cut);
     }
-    result = cut_now(request, {}, true);
+    result = cut_now(request, {}, UndoStep::own);
   });
   return result;
 }
@@ -205,7 +191,7 @@ CutResult World::cut_along(Blade& blade) {
   request.at_rest = true;
   request.within = std::exchange(blade.waiting, {});
   blade.way = 0.0;
-  const CutResult result = cut_now(request, {}, !blade.cuts);
+  const CutResult result = cut_now(request, {}, blade.cuts ? UndoStep::joined : UndoStep::own);
   blade.cuts = blade.cuts || result.opened > 0;
   return result;
 }
@@ -249,7 +235,7 @@ void World::cut_on_schedule() {
       if (cut.time <= from || cut.time > to) continue;
       request.surface = surface_of(cut);
     }
-    cut_now(request, cut.name, first);
+    cut_now(request, cut.name, first ? UndoStep::own : UndoStep::joined);
   }
 }
 

@@ -115,6 +115,7 @@ void World::note_model() {
     bodies_.push_back(std::move(info));
   }
   std::vector<Triangle> surface = build_surface(model_->tets, model_->body_node_count()).triangles;
+  fronts_.clear();
   if (surface != surface_) ++topology_;
   surface_ = std::move(surface);
   good_ = run_;

@@ -18,6 +18,7 @@
 #include "sinew/base/clock.h"
 #include "sinew/contact/contact.h"
 #include "sinew/contact/contact_finder.h"
+#include "sinew/cut/crack_front.h"
 #include "sinew/model/controls.h"
 #include "sinew/model/obstacle.h"
 #include "sinew/model/state.h"
@@ -275,9 +276,14 @@ class World {
   Undo this_moment() const;
   static void forget_old_models(std::vector<Undo>& moments);
   const Body& body_named(const std::string& name) const;
-  CutResult cut_now(const CutRequest& request, const std::string& name, bool new_undo);
+  // The moment that undo() returns to: the one before this cut, that of the stroke which the cut
+  // belongs to, or none of its own (a tear).
+  enum class UndoStep { own, joined, none };
+  CutResult cut_now(const CutRequest& request, const std::string& name, UndoStep undo_step,
+                    double fracture_energy = 0.0);
   void record_cut(const std::string& name, bool first, const CutResult& result);
   void cut_on_schedule();
+  void tear_where_due();
   CutTriangles surface_of(const SceneCut& cut) const;
   CutResult cut_along(Blade& blade);
   Index count_parts_now();
@@ -318,6 +324,7 @@ class World {
   std::vector<Undo> undo_, redo_;
   // Of the model with this hash: pieces, and smallest dihedral angle at rest [rad].
   std::uint64_t quality_of_ = 0;
+  std::vector<CrackFront> fronts_;  // (bodies) of the model; empty: not looked for yet
   Index parts_now_ = 0;
   double angle_now_ = 0.0;
   std::unique_ptr<Stepping> stepping_;

@@ -1,0 +1,41 @@
+// Tearing: where a body is about to tear, as the surface of its next cut. docs/methods/tearing.md.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "sinew/cut/crack_front.h"
+#include "sinew/cut/cut_model.h"
+#include "sinew/cut/cut_surface.h"
+
+namespace sinew {
+
+// The energy that the body releases when the front advances, as a vector in the rest shape at every
+// node of the front [J/m2]: its component in a direction is the release per area of a crack that
+// goes there. It is the sum of the configurational forces
+//   - dW/dX_a = - sum_t V_t (W I - F^T P) grad N_a
+// of the front's node and the nodes near it, over the length of the front that is theirs (Miehe and
+// Gurses 2007; the sum over a neighbourhood is the J-integral as an integral over a domain: Li,
+// Shih, Needleman 1985). Near: nearer than 2.2 times `size` [m] (nodes of the body) and free to
+// move. Values are averaged along the front over that length. x: positions [m] (nodes).
+std::vector<Vec3> measure_release(const Model& model, const Body& body,
+                                  std::span<const double> size, const CrackFront& front,
+                                  std::span<const Vec3> x);
+
+struct Tear {
+  CutTriangles surface;  // in the rest shape [m]
+  Box box;               // around it
+  double energy = 0.0;   // [J/m2] to pay for it per area; 0 under tear_strain
+};
+
+// The next part of the tear, about a tet long:
+//   tear_energy   the front advances in the direction of the release, where that reaches it
+//   tear_strain   the front advances across the largest principal strain, where that reaches it as
+//                 a mean over a ball of the diameter tear_length ahead of the front; away from
+//                 a front, a disc of that diameter opens where the mean around a tet reaches it
+// Empty: nothing tears. `part`: the body as it was assembled. Positions x [m] (nodes).
+std::optional<Tear> find_tear(const Model& model, const Body& body, const CutBody& part,
+                              const CrackFront& front, std::span<const Vec3> x);
+
+}  // namespace sinew
