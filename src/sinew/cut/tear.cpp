@@ -250,11 +250,7 @@ class TearingBody {
     double energy = 0.0;
     for (std::size_t s = 0; s < release.size(); ++s) {
       const double r = 0.5 * front_reach * size_at(s);
-      Mat3 sum = Mat3::Zero();
-      for (const Index o : front_.near[s])
-        sum += mean_in(model_.rest_position[uz(front_.nodes[uz(o)])] + r * front_.ahead[s], r,
-                       front_.nodes[uz(o)]);
-      a.to.push_back(across_stretch(s, largest_strain(sum).along));
+      a.to.push_back(across_stretch(s, largest_strain(mean_ahead(s, r)).along));
       a.strength.push_back(needed[s] < no_limit ? release[s].dot(a.to[s]) / needed[s] : 0.0);
       if (a.strength[s] >= 1.0) energy = std::max(energy, needed[s]);
     }
@@ -321,6 +317,16 @@ class TearingBody {
     return sum / volume;
   }
 
+  // Over balls ahead of node s of the front and the nodes near it.
+  Mat3 mean_ahead(std::size_t s, double radius) const {
+    Mat3 sum = Mat3::Zero();
+    for (const Index o : front_.near[s]) {
+      const Index node = front_.nodes[uz(o)];
+      sum += mean_in(model_.rest_position[uz(node)] + radius * front_.ahead[s], radius, node);
+    }
+    return sum / static_cast<double>(front_.near[s].size());
+  }
+
   std::optional<Tear> front_by_strain() const {
     Advance a;
     for (std::size_t s = 0; s < front_.nodes.size(); ++s) {
@@ -331,8 +337,7 @@ class TearingBody {
       if (limit == no_limit) continue;
       const Index tet = model_.node_tet[uz(model_.tet_start[uz(node)])] / 4;
       const double r = 0.5 * length_of(material(tet));
-      const Strain strain =
-          largest_strain(mean_in(model_.rest_position[uz(node)] + r * front_.ahead[s], r, node));
+      const Strain strain = largest_strain(mean_ahead(s, r));
       a.strength[s] = strain.value / limit;
       a.to[s] = across_stretch(s, strain.along);
     }

@@ -166,7 +166,7 @@ ModelCut World::plan(const CutRequest& request) const {
                        : request.surface,
         bounds_of(x));
     cut[b] = plan_cut({rest, x, cut_bodies_[b].spec.mesh.tets, cut_bodies_[b].node_size}, surface,
-                      {}, request.within ? &*request.within : nullptr);
+                      request.options, request.within ? &*request.within : nullptr);
   }
   return cut;
 }

@@ -8,6 +8,7 @@
 #include "sinew/contact/box_tree.h"
 #include "sinew/cut/cut_model.h"
 #include "sinew/cut/cut_surface.h"
+#include "sinew/cut/plan_cut.h"
 #include "sinew/sim/bytes.h"
 
 namespace sinew::sim {
@@ -17,6 +18,7 @@ struct CutRequest {
   std::string body;           // empty: every body
   bool at_rest = false;       // given in the rest shape; else where the bodies are now
   std::optional<Box> within;  // of the surface: only tets that overlap it are cut
+  CutOptions options;
 };
 
 // What a cut did.

@@ -8,6 +8,10 @@
 namespace sinew::sim {
 namespace {
 
+// A tear keeps to the faces that are there: its way is not given to less than a tet, and its front
+// stays clean and its tets as large as they were.
+constexpr double tear_snap = 0.5;
+
 bool body_tears(const CutBody& body) {
   return std::any_of(body.spec.materials.begin(), body.spec.materials.end(), tears);
 }
@@ -39,6 +43,7 @@ void World::tear_where_due() {
       request.body = body.name;
       request.at_rest = true;
       request.within = tear->box;
+      request.options.snap = tear_snap;
       opened += cut_now(request, "tear of " + body.name, UndoStep::none, tear->energy).opened;
     }
     if (opened == 0) return;
