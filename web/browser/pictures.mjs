@@ -30,6 +30,7 @@ const cards = {
   "talk-good-constants": { frames: 9, color: "displacement", show: "u" },
   "talk-tissue-limits": { frames: 30, color: "stretch" },
   "talk-tissue": { frames: 30, color: "stretch" },
+  "tear-strip": { frames: 66, color: "stretch", from: [0.15, 0.25, 1], room: 1.02 },
   twist: { frames: 90, color: "stress" },
 };
 
