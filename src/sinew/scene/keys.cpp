@@ -151,7 +151,7 @@ KeyTables make_tables() {
                     number("volume_stiffness", "Pa", "the one of young and poisson", not_negative),
                     number("tear_energy", "J/m2", "inf", positive_or_none),
                     number("tear_strain", "", "inf", positive_or_none),
-                    number("tear_length", "m", "a tenth of the body's size", positive),
+                    number("tear_length", "m", "the tenth part of the body's size", positive),
                 }};
   t.region = {"region",
               "[body.NAME.region.NAME]",

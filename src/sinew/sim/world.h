@@ -198,6 +198,8 @@ class World {
   Wrench wrench(std::size_t obstacle, const Vec3& about);
   Wrench pin_wrench(std::size_t pin, const Vec3& about);
   void contacts(std::size_t obstacle, std::vector<ContactPoint>& out);
+  // The points of the bodies nearer to a hard obstacle than `reach` [m]. Replaces `out`.
+  void points_near(std::size_t obstacle, double reach, std::vector<ContactPoint>& out);
   double depth(std::size_t obstacle);
   // Null if there are no contacts but those of soft obstacles.
   ContactFinder* finder();

@@ -23,6 +23,12 @@ Vec3 place_of_contact(const Contact& c, const std::vector<Vec3>& x) {
   return place;
 }
 
+ContactPoint point_of(const Contact& c, const std::vector<Vec3>& x) {
+  const auto most = std::max_element(c.weight.begin(), c.weight.begin() + c.count);
+  return {point(place_of_contact(c, x)), point(c.normal), -c.gap,
+          c.node[static_cast<std::size_t>(most - c.weight.begin())]};
+}
+
 }  // namespace
 
 const std::vector<Vec3>& World::forces() {
@@ -85,12 +91,20 @@ void World::contacts(std::size_t obstacle, std::vector<ContactPoint>& out) {
     return;
   }
   find_contacts_now();
-  for (const Contact& c : contacts_) {
-    if (c.id.obstacle() != static_cast<Index>(obstacle)) continue;
-    const auto most = std::max_element(c.weight.begin(), c.weight.begin() + c.count);
-    out.push_back({point(place_of_contact(c, x)), point(c.normal), -c.gap,
-                   c.node[static_cast<std::size_t>(most - c.weight.begin())]});
-  }
+  for (const Contact& c : contacts_)
+    if (c.id.obstacle() == static_cast<Index>(obstacle)) out.push_back(point_of(c, x));
+}
+
+void World::points_near(std::size_t obstacle, double reach, std::vector<ContactPoint>& out) {
+  out.clear();
+  const State& s = run_.state;
+  std::vector<Contact> found;
+  arena_.run([&] {
+    if (ContactFinder* f = finder())
+      f->find(*controls_, s.position, s.position, s.time, s.time, reach, found);
+  });
+  for (const Contact& c : found)
+    if (c.id.obstacle() == static_cast<Index>(obstacle)) out.push_back(point_of(c, s.position));
 }
 
 double World::depth(std::size_t obstacle) {
