@@ -17,4 +17,5 @@ void add_study(CLI::App& app);
 void add_calibrate(CLI::App& app);
 void add_bench(CLI::App& app, int& status);
 void add_view(CLI::App& app, int& status);
+void add_feel(CLI::App& app, int& status);
 void add_completion(CLI::App& app);

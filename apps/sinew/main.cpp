@@ -60,6 +60,7 @@ int run(int argc, char** argv, int& output_failure) {
   add_run(app, status);
   add_resume(app, status);
   add_view(app, status);
+  add_feel(app, status);
   add_info(app);
   add_convert(app);
   add_repair(app);

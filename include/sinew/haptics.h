@@ -12,6 +12,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace sinew {
@@ -75,6 +76,8 @@ class SINEW_API RecordedPath : public HapticDevice {
   // CSV: time, x, y, z and, if given, qw, qx, qy, qz, button; lines that start with # and a line of
   // names are skipped. Error(io) if it cannot be read, Error(input) with file and line for a fault.
   static RecordedPath from_file(const std::filesystem::path& file);
+  // The same for a text, `name` in messages.
+  static RecordedPath from_text(std::string_view text, const std::string& name = "path");
   RecordedPath(RecordedPath&& other) noexcept;
   HapticInput read(double dt) override;
   void write(const Wrench& wrench) override;
@@ -123,8 +126,8 @@ struct HapticsStatistics {
 // device must outlive it.
 class SINEW_API Haptics {
  public:
-  // The tool: a hard obstacle without a path. Error(usage) for a soft obstacle, or options that are
-  // not valid.
+  // The tool: a hard obstacle; a path of its own ends with the first advance(). Error(usage) for a
+  // soft obstacle, or options that are not valid.
   Haptics(Simulation& simulation, ObstacleHandle tool, HapticDevice& device,
           const HapticsOptions& options = {});
   Haptics(Haptics&& other) noexcept;

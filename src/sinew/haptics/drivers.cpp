@@ -58,7 +58,10 @@ RecordedPath::RecordedPath(RecordedPath&& other) noexcept
     : rows_(std::move(other.rows_)), at_(other.at_), time_(other.time_) {}
 
 RecordedPath RecordedPath::from_file(const std::filesystem::path& file) {
-  const std::string text = io::read_file(file);
+  return from_text(io::read_file(file), file.string());
+}
+
+RecordedPath RecordedPath::from_text(std::string_view text, const std::string& name) {
   std::vector<Row> rows;
   std::size_t line_number = 0;
   for (std::size_t start = 0; start < text.size();) {
@@ -82,7 +85,7 @@ RecordedPath RecordedPath::from_file(const std::filesystem::path& file) {
       at = comma + 1;
     }
     if (fault && rows.empty() && values.size() == 1) continue;  // the line of names
-    const std::string place = fmt::format("{}:{}", file.string(), line_number);
+    const std::string place = fmt::format("{}:{}", name, line_number);
     const std::size_t n = values.size();
     if (fault || (n != 4 && n != 8 && n != 9))
       throw Error(ErrorKind::input,
@@ -103,8 +106,7 @@ RecordedPath RecordedPath::from_file(const std::filesystem::path& file) {
     rows.push_back(row);
   }
   if (rows.empty())
-    throw Error(ErrorKind::input, fmt::format("{}: no rows", file.string()),
-                "give rows of time, x, y, z");
+    throw Error(ErrorKind::input, fmt::format("{}: no rows", name), "give rows of time, x, y, z");
   return RecordedPath(std::move(rows));
 }
 

@@ -52,9 +52,7 @@ double PeriodCount::share_up_to(double seconds) const {
 }
 
 HapticLoop::HapticLoop(HapticDevice& device, const HapticsOptions& options)
-    : device_(device),
-      options_(options),
-      turn_(rotation_of(options.rotation)) {}
+    : device_(device), options_(options), turn_(rotation_of(options.rotation)) {}
 
 // The hand felt `given_` on the way since the last tick. W = sum -F . dx is what it has put in;
 // while W < 0, the loop has given more than it took, and the force gets a damping alpha v with
