@@ -25,7 +25,7 @@ _sinew() {
   local meshes=(mesh msh vtk vtu node ele)
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    _sinew_words "run resume view info convert repair identify converge study calibrate validate materials bench completion --help --version"
+    _sinew_words "run resume view feel info convert repair identify converge study calibrate validate materials bench completion --help --version"
     return
   fi
   case ${COMP_WORDS[1]}:$previous in
@@ -57,7 +57,8 @@ _sinew() {
       return
       ;;
     run:--young | run:--poisson | run:--restitution | view:--young | view:--poisson | view:--restitution) return ;;
-    bench:--json | bench:--peer | view:--scenes)
+    feel:--tool | feel:--listen | feel:--mass | feel:--coupling | feel:--origin | feel:--max-force) return ;;
+    feel:--hand | feel:--path | feel:--log | bench:--json | bench:--peer | view:--scenes)
       _sinew_files '*'
       return
       ;;
@@ -66,6 +67,8 @@ _sinew() {
   case ${COMP_WORDS[1]}:$cur in
     run:-*) _sinew_words "-o --out --set --constraints --young --poisson --restitution --force --no-output --json -q --quiet --threads --help" ;;
     view:-*) _sinew_words "--scenes --port --open --host --set --constraints --young --poisson --restitution -q --quiet --threads --help" ;;
+    feel:-*) _sinew_words "--tool --hand --path --listen --seconds --mass --coupling --scale --origin --max-force --log --set --json -q --quiet --threads --help" ;;
+    feel:*) _sinew_scenes ;;
     view:*) _sinew_scenes "${meshes[@]}" ;;
     resume:-*) _sinew_words "--json -q --quiet --threads --help" ;;
     info:-*) _sinew_words "--scale --labels --node-labels --json --help" ;;

@@ -25,6 +25,7 @@ _sinew() {
         'run:Run a scene into a folder'
         'resume:Go on with a run from its last checkpoint'
         'view:Show a scene live in the browser'
+        'feel:Feel the tissue of a scene with a haptic device'
         'info:Examine a mesh'
         'convert:Convert between mesh formats'
         'repair:Join double nodes, remove flat tets'
@@ -77,6 +78,25 @@ _sinew() {
             '--poisson[Poisson ratio of the same objects]:number:' \
             '--restitution[Of platform and objects, 0 to 1]:number:' \
             '1:scene:_files -g "(*.toml|*-scene.txt|$meshes)(-.)"'
+          ;;
+        feel)
+          _arguments '--tool[Obstacle that the device moves]:name:' \
+            '--hand[A simulated hand that wants to follow this path]:file:_files -g "*.csv(-.)"' \
+            '--path[A handle that follows this path]:file:_files -g "*.csv(-.)"' \
+            '--listen[Port for a device that speaks WebSocket]:port:' \
+            '--seconds[Real time to run]:seconds:' \
+            '--mass[Of the simulated hand, kg]:number:' \
+            '--coupling[Spring between handle and tool, N/m]:number:' \
+            '--scale[Metres in the scene for one of the device]:number:' \
+            '*--origin[Where the origin of the device is in the scene]:X Y Z:' \
+            '--max-force[Longer forces are shortened, N]:number:' \
+            '--log[CSV file of place and force]:file:_files' \
+            '*--set[Override a value]:KEY=VALUE:' \
+            '--json[Print JSON]' \
+            '(-q --quiet)'{-q,--quiet}'[Print errors only]' \
+            '--threads[Threads to use]:count:' \
+            '--help[Show help]' \
+            '1:scene:_files -g "*.toml(-.)"'
           ;;
         info)
           _arguments '--scale[Factor from the unit of the file to metres]:factor:' \
