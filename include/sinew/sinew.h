@@ -6,6 +6,7 @@
 
 #ifdef __cplusplus
 #include <sinew/error.h>
+#include <sinew/forceps.h>
 #include <sinew/haptics.h>
 #include <sinew/scene_builder.h>
 #include <sinew/simulation.h>
