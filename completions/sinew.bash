@@ -57,8 +57,8 @@ _sinew() {
       return
       ;;
     run:--young | run:--poisson | run:--restitution | view:--young | view:--poisson | view:--restitution) return ;;
-    feel:--tool | feel:--listen | feel:--mass | feel:--coupling | feel:--origin | feel:--max-force) return ;;
-    feel:--hand | feel:--path | feel:--log | bench:--json | bench:--peer | view:--scenes)
+    feel:--tool | feel:--listen | feel:--mass | feel:--coupling | feel:--origin | feel:--max-force | feel:--force-limit | feel:--strain-limit | feel:--spare) return ;;
+    feel:--hand | feel:--path | feel:--log | feel:--metrics | bench:--json | bench:--peer | view:--scenes)
       _sinew_files '*'
       return
       ;;
@@ -67,7 +67,7 @@ _sinew() {
   case ${COMP_WORDS[1]}:$cur in
     run:-*) _sinew_words "-o --out --set --constraints --young --poisson --restitution --force --no-output --json -q --quiet --threads --help" ;;
     view:-*) _sinew_words "--scenes --port --open --host --set --constraints --young --poisson --restitution -q --quiet --threads --help" ;;
-    feel:-*) _sinew_words "--tool --hand --path --listen --seconds --mass --coupling --scale --origin --max-force --log --set --json -q --quiet --threads --help" ;;
+    feel:-*) _sinew_words "--tool --hand --path --listen --seconds --mass --coupling --scale --origin --max-force --log --metrics --force-limit --strain-limit --spare --set --json -q --quiet --threads --help" ;;
     feel:*) _sinew_scenes ;;
     view:*) _sinew_scenes "${meshes[@]}" ;;
     resume:-*) _sinew_words "--json -q --quiet --threads --help" ;;

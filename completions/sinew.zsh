@@ -91,6 +91,10 @@ _sinew() {
             '*--origin[Where the origin of the device is in the scene]:X Y Z:' \
             '--max-force[Longer forces are shortened, N]:number:' \
             '--log[CSV file of place and force]:file:_files' \
+            '--metrics[JSON file of what a trainer grades]:file:_files' \
+            '--force-limit[More is an event, N]:number:' \
+            '--strain-limit[More is an event]:number:' \
+            '*--spare[Region that must not be cut]:name:' \
             '*--set[Override a value]:KEY=VALUE:' \
             '--json[Print JSON]' \
             '(-q --quiet)'{-q,--quiet}'[Print errors only]' \

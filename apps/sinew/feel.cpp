@@ -1,6 +1,7 @@
 // sinew feel: a haptic device, or what stands for one, feels the tissue of a scene.
 #include <fmt/format.h>
 #include <sinew/haptics.h>
+#include <sinew/metrics.h>
 
 #include <cstdio>
 #include <filesystem>
@@ -29,7 +30,8 @@ Examples:
   sinew feel scenes/palpate.toml --tool finger --listen 8741      a device that speaks WebSocket)";
 
 struct FeelArguments {
-  std::string scene, tool, hand, path, log;
+  std::string scene, tool, hand, path, log, metrics;
+  MetricsDescription limits;
   int port = -1;
   double seconds = 0.0, mass = 0.3;
   HapticsOptions options;
@@ -90,9 +92,10 @@ void feel(const FeelArguments& a, int& status) {
     throw Error(ErrorKind::usage, fmt::format("{} devices are given", devices),
                 "give one of --hand FILE, --path FILE and --listen PORT");
   // Refused before the scene is read, which may take long.
-  if (!a.log.empty() && std::filesystem::exists(a.log))
-    throw Error(ErrorKind::usage, fmt::format("{} exists already", a.log),
-                "name a new file for --log, or remove that one");
+  for (const std::string& file : {a.log, a.metrics})
+    if (!file.empty() && std::filesystem::exists(file))
+      throw Error(ErrorKind::usage, fmt::format("{} exists already", file),
+                  "name a new file, or remove that one");
   const std::unique_ptr<HapticDevice> device = device_of(a);
   SimulationOptions options;
   options.threads = a.threads;
@@ -102,6 +105,9 @@ void feel(const FeelArguments& a, int& status) {
   if (!a.origin.empty()) haptics_options.origin = {a.origin[0], a.origin[1], a.origin[2]};
   const ObstacleHandle tool = simulation.obstacle(a.tool);
   Haptics haptics(simulation, tool, *device, haptics_options);
+  MetricsDescription limits = a.limits;
+  limits.tools = {a.tool};
+  Metrics metrics(simulation, limits);
   const auto& stop = stop_on_signals();
   if (const auto* network = dynamic_cast<const server::NetworkDevice*>(device.get());
       network && !a.quiet)
@@ -112,6 +118,7 @@ void feel(const FeelArguments& a, int& status) {
   while (!stop.load() && (a.seconds == 0.0 || real < a.seconds - 0.5 * part)) {
     simulated += part * haptics.run(part);
     real += part;
+    metrics.update();
     if (a.log.empty()) continue;
     const Point x = haptics.tool().center, f = haptics.force().force;
     log += fmt::format("{:.4f},{:.6f},{:.6f},{:.6f},{:.5f},{:.5f},{:.5f},{}\n", real, x[0], x[1],
@@ -119,6 +126,7 @@ void feel(const FeelArguments& a, int& status) {
   }
   haptics.stop();
   if (!a.log.empty()) io::write_file(a.log, log);
+  if (!a.metrics.empty()) io::write_file(a.metrics, metrics.json() + "\n");
   if (!a.quiet) print(haptics, haptics.statistics(), real > 0.0 ? simulated / real : 1.0, a.json);
   if (stop.load() && a.seconds > 0.0) status = interrupted;
 }
@@ -154,6 +162,14 @@ void add_feel(CLI::App& app, int& status) {
       ->capture_default_str();
   sub->add_option("--log", a->log, "CSV file of place and force, 50 rows a second")
       ->type_name("FILE");
+  sub->add_option("--metrics", a->metrics, "JSON file of what a trainer grades (docs/metrics.md)")
+      ->type_name("FILE");
+  sub->add_option("--force-limit", a->limits.force_limit, "More is an event of --metrics [N]")
+      ->capture_default_str();
+  sub->add_option("--strain-limit", a->limits.strain_limit, "More is an event of --metrics")
+      ->capture_default_str();
+  sub->add_option("--spare", a->limits.spared, "Region that must not be cut: BODY.REGION")
+      ->type_name("NAME ...");
   sub->add_option("--set", a->set, "Override a value of the scene")->type_name("KEY=VALUE ...");
   sub->add_flag("--json", a->json, "Print the result as JSON");
   sub->add_flag("-q,--quiet", a->quiet, "Print errors only");

@@ -8,6 +8,7 @@
 #include <sinew/error.h>
 #include <sinew/forceps.h>
 #include <sinew/haptics.h>
+#include <sinew/metrics.h>
 #include <sinew/scene_builder.h>
 #include <sinew/simulation.h>
 #include <sinew/types.h>

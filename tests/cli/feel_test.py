@@ -12,7 +12,10 @@ PATH = SCENES / "paths/palpate.csv"
 class FeelTest(CliTest):
     def test_a_hand(self):
         result = self.run_sinew("feel", SCENE, "--tool", "finger", "--hand", PATH, "--seconds", 1,
-                                "--log", "felt.csv", "--json")
+                                "--log", "felt.csv", "--metrics", "graded.json", "--force-limit", 0.1, "--json")
+        graded = json.loads((self.dir / "graded.json").read_text())
+        self.assertEqual([tool["name"] for tool in graded["tools"]], ["finger"])
+        self.assertGreater(graded["tools"][0]["path"], 0)
         felt = json.loads(result.stdout)
         self.assertGreater(felt["ticks"], 100)
         self.assertGreater(felt["exchanges"], 10)
