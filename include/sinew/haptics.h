@@ -27,6 +27,7 @@ struct HapticInput {
 // A device, or what stands for one. The haptic loop calls read() and then write() once in a
 // millisecond, from its own thread, and no other thread calls them meanwhile. Neither may wait,
 // take a lock that others hold for long, or throw: a device that is lost keeps its last input.
+// An input that is no number, beyond 1 km or without a rotation counts as the one before.
 class SINEW_API HapticDevice {
  public:
   HapticDevice() = default;

@@ -9,13 +9,13 @@
 namespace sinew {
 namespace {
 
-SceneBuilder slab(int cells) {
+SceneBuilder slab(int cells, const std::string& law = {}) {
   SceneBuilder scene;
   scene.add_body({.name = "slab",
                   .shape = "box",
                   .cells = {{cells, cells / 2, cells}},
                   .size = {{0.08, 0.04, 0.08}},
-                  .material = {.density = 1060.0, .young = 5e3, .poisson = 0.45}});
+                  .material = {.law = law, .density = 1060.0, .young = 5e3, .poisson = 0.45}});
   scene.add_pin({.name = "table", .select = {.side = "-y"}});
   scene.add_obstacle({.name = "tool",
                       .shape = "sphere",
@@ -48,6 +48,22 @@ TEST(Haptics, TheForceAtRestIsThatOfTheSimulation) {
   EXPECT_NEAR(felt, simulated, 0.03 * felt);
   EXPECT_LT(std::abs(hand.velocity()[1]), 1e-3);
   EXPECT_GT(haptics.statistics().energy, 0.0);
+}
+
+TEST(Haptics, FeelEveryLaw) {
+  for (const char* law : {"calibrated", "lloyd", "vangelder"}) {
+    Simulation simulation{slab(4, law)};
+    HandDescription description = pressing_hand();
+    description.start = {0.0, 0.0355, 0.0};
+    description.aim = [](double) { return Point{0.0, 0.0, 0.0}; };
+    SimulatedHand hand(description);
+    Haptics haptics(simulation, simulation.obstacle("tool"), hand);
+    for (int k = 0; k < 8; ++k) {
+      for (int t = 0; t < 10; ++t) haptics.tick();
+      haptics.advance(0.01);
+    }
+    EXPECT_GT(haptics.force().force[1], 0.0) << law;
+  }
 }
 
 TEST(Haptics, TheLoopRunsBesideTheSimulation) {

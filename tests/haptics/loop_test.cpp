@@ -119,6 +119,27 @@ TEST(HapticLoop, FollowsTheDevicesFrame) {
   EXPECT_NEAR(loop.latest().path, 0.2, 1e-3);
 }
 
+// A driver with a fault does not throw the hand.
+TEST(HapticLoop, AnInputThatIsNoNumberCountsAsTheOneBefore) {
+  class Faulty final : public HapticDevice {
+   public:
+    HapticInput read(double) override {
+      const double x = ++ticks_ % 2 == 0 ? std::nan("") : 0.01;
+      return {{x, 0.0, 0.0}, {ticks_ % 3 == 0 ? 0.0 : 1.0, 0.0, 0.0, 0.0}, false};
+    }
+    void write(const Wrench& wrench) override {
+      for (const double f : wrench.force) EXPECT_TRUE(std::isfinite(f));
+    }
+
+   private:
+    int ticks_ = 0;
+  };
+  Faulty device;
+  HapticLoop loop(device, {});
+  for (int t = 0; t < 20; ++t) loop.tick(1e-3);
+  EXPECT_EQ(loop.latest().tool.center[0], 0.01);
+}
+
 TEST(PeriodCount, Percentiles) {
   PeriodCount count;
   for (int i = 0; i < 999; ++i) count.add(1.004e-3);

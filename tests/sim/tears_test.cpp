@@ -87,6 +87,12 @@ TEST(Tears, PartTheStripAndAccountForTheEnergy) {
   EXPECT_GT(tear.released, 0.8 * tear.fracture);
 }
 
+// Laws without cells or a network tear by strain, too.
+TEST(Tears, SpringsTearByStrain) {
+  Simulation strip = notched_strip("[16, 8, 1]", "law = \"lloyd\"\ntear_strain = 0.4");
+  EXPECT_GT(first_tear(strip), 0.0);
+}
+
 TEST(Tears, ASavedStateTearsOnWithTheSameBits) {
   Simulation a = notched_strip("[16, 8, 1]", "tear_energy = 60");
   first_tear(a);

@@ -100,13 +100,20 @@ class TearingBody {
               std::span<const Vec3> x)
       : model_(model), body_(body), part_(part), front_(front), x_(x) {
     size_ = std::cbrt(body.rest_volume);
+    if (front.empty()) return;
+    tets_at_.resize(front.nodes.size());
+    for (Index t = body.tets.begin; t < body.tets.end; ++t)
+      for (const Index node : model.tets[uz(t)]) {
+        const auto at = std::lower_bound(front.nodes.begin(), front.nodes.end(), node);
+        if (at != front.nodes.end() && *at == node)
+          tets_at_[static_cast<std::size_t>(at - front.nodes.begin())].push_back(t);
+      }
   }
 
-  // Of the tets at a node, the mean; infinite where none has it.
-  double mean_at(Index node, double Material::*value) const {
+  // Of the tets at a node of the front, the mean; infinite where none has it.
+  double mean_at(std::size_t s, double Material::*value) const {
     double sum = 0.0, volume = 0.0;
-    for (Index k = model_.tet_start[uz(node)]; k < model_.tet_start[uz(node) + 1]; ++k) {
-      const Index t = model_.node_tet[uz(k)] / 4;
+    for (const Index t : tets_at_[s]) {
       const double v = material(t).*value;
       if (v == no_limit) continue;
       sum += model_.rest_volume[uz(t)] * v;
@@ -121,7 +128,7 @@ class TearingBody {
     std::vector<double> needed;
     double most = 0.0;  // of release over what it takes, whatever its direction
     for (std::size_t s = 0; s < release.size(); ++s) {
-      needed.push_back(mean_at(front_.nodes[s], &Material::tear_energy));
+      needed.push_back(mean_at(s, &Material::tear_energy));
       most = std::max(most, release[s].norm() / needed[s]);
     }
     if (most < 1.0) return std::nullopt;
@@ -179,22 +186,23 @@ class TearingBody {
     return m.tear_length > 0.0 ? m.tear_length : 0.1 * size_;
   }
 
-  // The mean of F^T F over the tets whose centres are in the ball; over those of the node if none
-  // is.
-  Mat3 mean_in(const Vec3& center, double radius, Index node) const {
+  // The mean of F^T F over the tets whose centres are in the ball; of the nearest if none is.
+  Mat3 mean_in(const Vec3& center, double radius) const {
     Mat3 sum = Mat3::Zero();
-    double volume = 0.0;
-    const auto add = [&](std::size_t i) {
+    double volume = 0.0, least = no_limit;
+    std::size_t nearest = 0;
+    for (std::size_t i = 0; i < place_.size(); ++i) {
+      const double square = (place_[i] - center).squaredNorm();
+      if (square < least) {
+        least = square;
+        nearest = i;
+      }
+      if (square > radius * radius) continue;
       const double v = model_.rest_volume[uz(body_.tets.begin) + i];
       sum += v * stretch_[i];
       volume += v;
-    };
-    for (std::size_t i = 0; i < place_.size(); ++i)
-      if ((place_[i] - center).squaredNorm() <= radius * radius) add(i);
-    if (volume == 0.0)
-      for (Index k = model_.tet_start[uz(node)]; k < model_.tet_start[uz(node) + 1]; ++k)
-        add(uz(model_.node_tet[uz(k)] / 4 - body_.tets.begin));
-    return sum / volume;
+    }
+    return volume > 0.0 ? Mat3(sum / volume) : stretch_[nearest];
   }
 
   // Over balls ahead of node s of the front and the nodes near it.
@@ -202,7 +210,7 @@ class TearingBody {
     Mat3 sum = Mat3::Zero();
     for (const Index o : front_.near[s]) {
       const Index node = front_.nodes[uz(o)];
-      sum += mean_in(model_.rest_position[uz(node)] + radius * front_.ahead[s], radius, node);
+      sum += mean_in(model_.rest_position[uz(node)] + radius * front_.ahead[s], radius);
     }
     return sum / static_cast<double>(front_.near[s].size());
   }
@@ -210,13 +218,11 @@ class TearingBody {
   std::optional<Tear> front_by_strain() const {
     Advance a;
     for (std::size_t s = 0; s < front_.nodes.size(); ++s) {
-      const Index node = front_.nodes[s];
-      const double limit = mean_at(node, &Material::tear_strain);
+      const double limit = mean_at(s, &Material::tear_strain);
       a.to.push_back(front_.ahead[s]);
       a.strength.push_back(0.0);
       if (limit == no_limit) continue;
-      const Index tet = model_.node_tet[uz(model_.tet_start[uz(node)])] / 4;
-      const double r = 0.5 * length_of(material(tet));
+      const double r = 0.5 * length_of(material(tets_at_[s].front()));
       const Strain strain = largest_strain(mean_ahead(s, r));
       a.strength[s] = strain.value / limit;
       a.to[s] = across_stretch(s, strain.along);
@@ -235,8 +241,7 @@ class TearingBody {
       if (m.tear_strain == no_limit || largest_strain(stretch_[i]).value < most * m.tear_strain ||
           near_front(place_[i], length_of(m)))
         continue;
-      const Strain mean =
-          largest_strain(mean_in(place_[i], 0.5 * length_of(m), model_.tets[uz(t)][0]));
+      const Strain mean = largest_strain(mean_in(place_[i], 0.5 * length_of(m)));
       if (mean.value < most * m.tear_strain) continue;
       most = mean.value / m.tear_strain;
       where = static_cast<Index>(i);
@@ -271,9 +276,10 @@ class TearingBody {
   const CutBody& part_;
   const CrackFront& front_;
   std::span<const Vec3> x_;
-  double size_ = 0.0;          // of the body [m]
-  std::vector<Mat3> stretch_;  // F^T F (tets of the body)
-  std::vector<Vec3> place_;    // centroids at rest [m] (tets of the body)
+  double size_ = 0.0;                        // of the body [m]
+  std::vector<std::vector<Index>> tets_at_;  // (nodes of the front)
+  std::vector<Mat3> stretch_;                // F^T F (tets of the body)
+  std::vector<Vec3> place_;                  // centroids at rest [m] (tets of the body)
 };
 
 }  // namespace

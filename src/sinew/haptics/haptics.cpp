@@ -66,16 +66,17 @@ struct Around {
 };
 Around around(const Model& model, Index node) {
   Around out;
-  double volume = 0.0;
-  const Index begin = model.tet_start[uz(node)], end = model.tet_start[uz(node) + 1];
-  for (Index k = begin; k < end; ++k) {
-    const auto t = uz(model.node_tet[uz(k)] / 4);
+  double volume = 0.0, count = 0.0;
+  for (std::size_t t = 0; t < model.tets.size(); ++t) {
+    const Tet& tet = model.tets[t];
+    if (std::find(tet.begin(), tet.end(), node) == tet.end()) continue;
     out.young += 3.0 * model.tet_modulus[t] * model.rest_volume[t];
     volume += model.rest_volume[t];
+    count += 1.0;
   }
   if (volume > 0.0) out.young /= volume;
   // The edge of a regular tet of the mean volume.
-  if (end > begin) out.size = std::cbrt(8.5 * volume / static_cast<double>(end - begin));
+  if (count > 0.0) out.size = std::cbrt(8.5 * volume / count);
   return out;
 }
 

@@ -19,6 +19,15 @@ Mat3 rotation_of(const Quaternion& q) {
   return Eigen::Quaterniond(q[0], q[1], q[2], q[3]).normalized().toRotationMatrix();
 }
 
+bool usable(const HapticInput& input) {
+  constexpr double farthest = 1e3;  // [m]
+  double square = 0.0;
+  for (const double q : input.rotation) square += q * q;
+  return std::all_of(input.position.begin(), input.position.end(),
+                     [](double x) { return std::abs(x) <= farthest; }) &&
+         std::isfinite(square) && square > 1e-12;
+}
+
 Quaternion quaternion_of(const Mat3& turn) {
   const Eigen::Quaterniond q(turn);
   return {q.w(), q.x(), q.y(), q.z()};
@@ -73,7 +82,11 @@ Vec3 HapticLoop::passive(const Vec3& force, const Vec3& way, double dt) {
 }
 
 void HapticLoop::tick(double dt) {
-  const HapticInput input = device_.read(dt);
+  // A device that reports no numbers, or no rotation, is where it was: a fault of its driver must
+  // not reach the hand as a force.
+  const HapticInput said = device_.read(dt);
+  if (usable(said)) input_ = said;
+  const HapticInput& input = input_;
   const Vec3 hand = vec(options_.origin) + options_.scale * (turn_ * vec(input.position));
   if (!started_) {
     started_ = true;

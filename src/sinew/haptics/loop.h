@@ -60,6 +60,7 @@ class HapticLoop {
   TripleBuffer<LoopOutput> outputs_;
 
   LocalContact contact_;
+  HapticInput input_;
   LoopOutput now_;
   bool started_ = false;
   Vec3 hand_ = Vec3::Zero();        // in the scene [m]

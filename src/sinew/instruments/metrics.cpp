@@ -157,7 +157,8 @@ void Metrics::Inside::look_at_tissue() {
       // |F|^2 is the sum of the squared stretches: at most three times the largest, at least it.
       const double sum = F.squaredNorm();
       if (sum < most * most && sum < (1.0 + worst) * (1.0 + worst)) continue;
-      const Eigen::SelfAdjointEigenSolver<Mat3> eigen(F.transpose() * F, Eigen::EigenvaluesOnly);
+      Eigen::SelfAdjointEigenSolver<Mat3> eigen;
+      eigen.computeDirect(F.transpose() * F, Eigen::EigenvaluesOnly);
       const double strain = std::sqrt(eigen.eigenvalues()[2]) - 1.0;
       worst = std::max(worst, strain);
       largest = std::max(largest, strain);
