@@ -3,6 +3,7 @@
 #include <sinew/haptics.h>
 #include <sinew/metrics.h>
 
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -113,20 +114,32 @@ void feel(const FeelArguments& a, int& status) {
       network && !a.quiet)
     fmt::print(stderr, "Listening at ws://127.0.0.1:{}; Ctrl-C ends it\n", network->port());
   std::string log = "time [s],x [m],y [m],z [m],fx [N],fy [N],fz [N],button\n";
-  double real = 0.0, simulated = 0.0;
+  const auto begin = std::chrono::steady_clock::now();
+  const double from = simulation.time();
+  double real = 0.0;
   constexpr double part = 0.02;  // [s]
-  while (!stop.load() && (a.seconds == 0.0 || real < a.seconds - 0.5 * part)) {
-    simulated += part * haptics.run(part);
-    real += part;
-    metrics.update();
-    if (a.log.empty()) continue;
-    const Point x = haptics.tool().center, f = haptics.force().force;
-    log += fmt::format("{:.4f},{:.6f},{:.6f},{:.6f},{:.5f},{:.5f},{:.5f},{}\n", real, x[0], x[1],
-                       x[2], f[0], f[1], f[2], haptics.button() ? 1 : 0);
+  // What was felt is kept, also of a session that an error ends.
+  const auto keep = [&] {
+    haptics.stop();
+    if (!a.log.empty()) io::write_file(a.log, log);
+    if (!a.metrics.empty()) io::write_file(a.metrics, metrics.json() + "\n");
+  };
+  try {
+    while (!stop.load() && (a.seconds == 0.0 || real < a.seconds - 0.5 * part)) {
+      haptics.run(part);
+      real = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+      metrics.update();
+      if (a.log.empty()) continue;
+      const Point x = haptics.tool().center, f = haptics.force().force;
+      log += fmt::format("{:.4f},{:.6f},{:.6f},{:.6f},{:.5f},{:.5f},{:.5f},{}\n", real, x[0], x[1],
+                         x[2], f[0], f[1], f[2], haptics.button() ? 1 : 0);
+    }
+  } catch (...) {
+    keep();
+    throw;
   }
-  haptics.stop();
-  if (!a.log.empty()) io::write_file(a.log, log);
-  if (!a.metrics.empty()) io::write_file(a.metrics, metrics.json() + "\n");
+  keep();
+  const double simulated = simulation.time() - from;
   if (!a.quiet) print(haptics, haptics.statistics(), real > 0.0 ? simulated / real : 1.0, a.json);
   if (stop.load() && a.seconds > 0.0) status = interrupted;
 }

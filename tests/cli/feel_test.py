@@ -20,7 +20,8 @@ class FeelTest(CliTest):
         self.assertGreater(felt["ticks"], 100)
         self.assertGreater(felt["exchanges"], 10)
         rows = (self.dir / "felt.csv").read_text().splitlines()
-        self.assertEqual(len(rows), 51)
+        self.assertIn(len(rows), range(5, 53))
+        self.assertAlmostEqual(float(rows[-1].split(",")[0]), 1, delta=0.2)
         self.assertTrue(rows[0].startswith("time [s],x [m]"))
         self.run_sinew("feel", SCENE, "--tool", "finger", "--hand", PATH, "--seconds", 1, "--log",
                        "felt.csv", code=USAGE)

@@ -18,7 +18,8 @@ struct Tear {
 };
 
 // The next part of the tear, about a tet long:
-//   tear_energy   the front advances in the direction of the release, where that reaches it
+//   tear_energy   the front advances across the largest principal stretch ahead of it, where the
+//                 release in that direction reaches it
 //   tear_strain   the front advances across the largest principal strain, where that reaches it as
 //                 a mean over a ball of the diameter tear_length ahead of the front; away from
 //                 a front, a disc of that diameter opens where the mean around a tet reaches it
